@@ -1,0 +1,57 @@
+"""Exceptions: one small family, every message saying what to do.
+
+Bad input raises; a numerical failure does not: it is a `SolveStatus` that travels with the result
+(see `rotorsim.status`).
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+
+class RotorsimError(Exception):
+    """Base of everything that rotorsim raises on purpose."""
+
+
+class InputError(RotorsimError, ValueError):
+    """The input is wrong: where, what was found, what is allowed.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong and what is allowed, in one sentence.
+    source : str or Path, optional
+        The file (or other origin) of the value.
+    key : str, optional
+        Dotted name of the offending entry, for example ``bearing.radial_clearance``.
+    value : object, optional
+        What was found there.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        source: str | Path | None = None,
+        key: str | None = None,
+        value: object = None,
+    ) -> None:
+        self.message = message
+        self.source = None if source is None else str(source)
+        self.key = key
+        self.value = value
+        where = [part for part in (self.source, key) if part]
+        found = "" if value is None else f" (found: {value!r})"
+        super().__init__(": ".join([*where, message + found]))
+
+
+class ScenarioError(InputError):
+    """A scenario file cannot be used."""
+
+
+class TableError(InputError):
+    """A coefficient table cannot be used."""
+
+
+class OutOfRangeError(InputError):
+    """A look-up outside the tabulated range; the message gives the bounds."""

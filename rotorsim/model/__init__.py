@@ -1,0 +1,46 @@
+"""Frozen descriptions of what is computed: bearing, oil, settings, operating condition.
+
+SI units throughout (Pa, m, s, kg, K, rad). Angles in the load frame: from the static load's line,
+positive in the direction of rotation.
+"""
+
+from .bearing import Arc, Bearing, Groove
+from .case import Case
+from .lubricant import ExponentialViscosity, Lubricant, ViscosityLaw, WaltherViscosity
+from .operating import EccentricityTarget, LoadTarget, Target
+from .settings import (
+    BushModel,
+    Cavitation,
+    FilmSettings,
+    Inception,
+    InletModel,
+    MeshSize,
+    RupturedFriction,
+    ShaftModel,
+    ThermalModel,
+    ThermalSettings,
+)
+
+__all__ = [
+    "Arc",
+    "Bearing",
+    "BushModel",
+    "Case",
+    "Cavitation",
+    "EccentricityTarget",
+    "ExponentialViscosity",
+    "FilmSettings",
+    "Groove",
+    "Inception",
+    "InletModel",
+    "LoadTarget",
+    "Lubricant",
+    "MeshSize",
+    "RupturedFriction",
+    "ShaftModel",
+    "Target",
+    "ThermalModel",
+    "ThermalSettings",
+    "ViscosityLaw",
+    "WaltherViscosity",
+]

@@ -1,0 +1,148 @@
+"""What is modelled and how finely: the film's and the heat's settings."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from ..errors import InputError
+
+
+class Cavitation(StrEnum):
+    """What happens where the film would pull (see docs: theory)."""
+
+    FULL_SOMMERFELD = "full_sommerfeld"
+    HALF_SOMMERFELD = "half_sommerfeld"
+    REYNOLDS = "reynolds"
+    JFO = "jfo"
+
+
+class Inception(StrEnum):
+    """Where the film begins."""
+
+    FREE = "free"
+    """The complementarity problem decides."""
+    MAX_FILM = "max_film"
+    """p = 0 held at maximum thickness (a full-width slot there), or at the edge of a groove."""
+
+
+class ThermalModel(StrEnum):
+    """Film heating neglected, or solved for."""
+
+    ISOTHERMAL = "isothermal"
+    THD = "thd"
+
+
+class InletModel(StrEnum):
+    """Temperature of the oil where the film begins."""
+
+    FRESH = "fresh"
+    MIXING = "mixing"
+    PERIODIC = "periodic"
+
+
+class BushModel(StrEnum):
+    """Thermal condition of the bush's bore."""
+
+    AMBIENT = "ambient"
+    INSULATED = "insulated"
+    CONDUCTION = "conduction"
+
+
+class ShaftModel(StrEnum):
+    """Thermal condition of the shaft's surface."""
+
+    AMBIENT = "ambient"
+    INSULATED = "insulated"
+    """Isothermal at the temperature at which it takes no net heat from the film."""
+    GIVEN = "given"
+
+
+class RupturedFriction(StrEnum):
+    """Which part of the ruptured sector counts in the reported friction."""
+
+    WHOLE = "whole"
+    """All of it, as Raimondi & Boyd, Butenschoen and the paper count."""
+    LIQUID = "liquid"
+    """Only the liquid fraction: the part that heats the oil."""
+
+
+@dataclass(frozen=True)
+class MeshSize:
+    """Cells around the bearing, along its whole length, across the film and through the bush."""
+
+    circumferential: int = 156
+    axial: int = 48
+    cross_film: int = 24
+    bush_radial: int = 24
+
+    def __post_init__(self) -> None:
+        lowest = {"circumferential": 16, "axial": 4, "cross_film": 4, "bush_radial": 2}
+        for name, least in lowest.items():
+            value = getattr(self, name)
+            if not least <= value <= 4096:
+                raise InputError(
+                    f"must be a whole number from {least} to 4096",
+                    key=f"film.mesh.{name}",
+                    value=value,
+                )
+        if self.axial % 2:
+            raise InputError("must be even", key="film.mesh.axial", value=self.axial)
+
+
+@dataclass(frozen=True)
+class FilmSettings:
+    """Film model and mesh."""
+
+    cavitation: Cavitation = Cavitation.REYNOLDS
+    inception: Inception = Inception.MAX_FILM
+    mesh: MeshSize = field(default_factory=MeshSize)
+    ruptured_friction: RupturedFriction = RupturedFriction.WHOLE
+
+
+@dataclass(frozen=True)
+class ThermalSettings:
+    """Thermal model and its boundary conditions.
+
+    Parameters
+    ----------
+    model : ThermalModel
+    ambient_temperature : float
+        [K]; of the surroundings, and of walls that are ``ambient``.
+    supply_temperature : float
+        [K]; of the oil supplied, and of an isothermal film.
+    inlet, shaft, bush
+    shaft_temperature : float or None
+        [K]; with ``shaft = given``.
+    bush_conductivity : float
+        [W/(m K)], with ``bush = conduction``.
+    bush_heat_transfer : float
+        Convection to the surroundings outside and at both ends [W/(m2 K)].
+    """
+
+    model: ThermalModel = ThermalModel.THD
+    ambient_temperature: float = 313.15
+    supply_temperature: float = 313.15
+    inlet: InletModel = InletModel.FRESH
+    shaft: ShaftModel = ShaftModel.AMBIENT
+    bush: BushModel = BushModel.AMBIENT
+    shaft_temperature: float | None = None
+    bush_conductivity: float = 250.0
+    bush_heat_transfer: float = 80.0
+
+    def __post_init__(self) -> None:
+        for name in ("ambient_temperature", "supply_temperature", "bush_conductivity"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError("must be above 0", key=f"thermal.{name}", value=value)
+        if not (math.isfinite(self.bush_heat_transfer) and self.bush_heat_transfer >= 0.0):
+            raise InputError(
+                "must be 0 or more", key="thermal.bush_heat_transfer", value=self.bush_heat_transfer
+            )
+        if (self.shaft is ShaftModel.GIVEN) != (self.shaft_temperature is not None):
+            raise InputError(
+                "a shaft temperature goes with shaft = given",
+                key="thermal.shaft",
+                value=self.shaft_temperature,
+            )
