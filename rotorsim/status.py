@@ -28,3 +28,6 @@ class Stability(StrEnum):
     """Stable below the critical mass, unstable above it."""
     ALWAYS_STABLE = "always_stable"
     ALWAYS_UNSTABLE = "always_unstable"
+    REVERSED_THRESHOLD = "reversed_threshold"
+    """Unstable below the critical mass, stable above it: only with indefinite damping (det C < 0),
+    which a user's own coefficients may have."""

@@ -1,0 +1,276 @@
+"""Critical mass and whirl frequency of a rigid rotor in closed form (Dal Eq. 22-24)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from ..status import Stability
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WhirlThreshold:
+    """Verdict on a rigid rotor at one operating point.
+
+    Attributes
+    ----------
+    stability : Stability
+    critical_mass : float or None
+        Mass per bearing at the threshold [kg]; None without a threshold.
+    whirl_frequency : float or None
+        Frequency of the undamped whirl at the threshold [rad/s].
+    whirl_frequency_ratio : float or None
+        Whirl frequency over shaft frequency [-].
+    critical_mass_dimensionless : float or None
+        M c omega^2/W; needs the load and the clearance.
+    """
+
+    stability: Stability
+    critical_mass: float | None = None
+    whirl_frequency: float | None = None
+    whirl_frequency_ratio: float | None = None
+    critical_mass_dimensionless: float | None = None
+
+
+@dataclass(frozen=True)
+class WhirlThresholds:
+    """`WhirlThreshold` for a whole array of operating points; NaN where there is no threshold.
+
+    `stability` holds the values of `Stability`, and an empty string where a coefficient is NaN.
+    """
+
+    stability: NDArray[np.str_]
+    critical_mass: Array
+    whirl_frequency: Array
+    whirl_frequency_ratio: Array
+    critical_mass_dimensionless: Array
+
+
+@dataclass(frozen=True)
+class RouthCoefficients:
+    """What Routh and Hurwitz ask of m s^2 + C s + K, for any mass.
+
+    Stable if and only if `trace_damping`, `cross` and `det_stiffness` are all above zero and
+    ``det_damping * equivalent_stiffness > mass * det_shifted``.
+
+    Attributes
+    ----------
+    trace_damping, det_damping, det_stiffness : arrays
+    cross : array
+        K_xx C_yy + K_yy C_xx - K_xy C_yx - K_yx C_xy, the coefficient of s.
+    equivalent_stiffness : array
+        K_e = cross/trace_damping [N/m] (Dal Eq. 23).
+    det_shifted : array
+        det(K - K_e I) [N^2/m^2], gamma^2 times det C (Dal Eq. 24).
+    """
+
+    trace_damping: Array
+    det_damping: Array
+    det_stiffness: Array
+    cross: Array
+    equivalent_stiffness: Array
+    det_shifted: Array
+
+    @property
+    def may_be_stable(self) -> NDArray[np.bool_]:
+        """Whether the conditions without the mass hold."""
+        return (self.trace_damping > 0.0) & (self.cross > 0.0) & (self.det_stiffness > 0.0)
+
+    def stable(self, mass: ArrayLike) -> NDArray[np.bool_]:
+        """Whether every eigenvalue has a negative real part at `mass` [kg] (broadcast)."""
+        slack = self.det_damping * self.equivalent_stiffness - np.asarray(mass) * self.det_shifted
+        return self.may_be_stable & (slack > 0.0)
+
+
+def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> RouthCoefficients:
+    """Routh-Hurwitz quantities of (..., 2, 2) stiffness [N/m] and damping [N s/m]."""
+    k = np.asarray(stiffness, dtype=float)
+    c = np.asarray(damping, dtype=float)
+    for name, value in (("stiffness", k), ("damping", c)):
+        if value.shape[-2:] != (2, 2):
+            raise InputError("must have shape (..., 2, 2)", key=name, value=value.shape)
+    kxx, kxy, kyx, kyy = k[..., 0, 0], k[..., 0, 1], k[..., 1, 0], k[..., 1, 1]
+    cxx, cxy, cyx, cyy = c[..., 0, 0], c[..., 0, 1], c[..., 1, 0], c[..., 1, 1]
+    trace = cxx + cyy
+    cross = kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        equivalent = cross / trace
+        # The difference kxx - K_e without its cancellation: the diagonal parts are the same number.
+        shift_x = (cxx * (kxx - kyy) + kxy * cyx + kyx * cxy) / trace
+        shift_y = (cyy * (kyy - kxx) + kxy * cyx + kyx * cxy) / trace
+        shifted = shift_x * shift_y - kxy * kyx
+    return RouthCoefficients(
+        trace_damping=trace,
+        det_damping=cxx * cyy - cxy * cyx,
+        det_stiffness=kxx * kyy - kxy * kyx,
+        cross=cross,
+        equivalent_stiffness=equivalent,
+        det_shifted=shifted,
+    )
+
+
+def _verdicts(routh: RouthCoefficients) -> NDArray[np.str_]:
+    """`Stability` of every point; with K_e > 0 only the signs of det C and det(K - K_e I) count."""
+    det_c, shifted = np.broadcast_arrays(routh.det_damping, routh.det_shifted)
+    possible = routh.may_be_stable
+    verdict = np.full(np.shape(possible), str(Stability.ALWAYS_UNSTABLE), dtype="U18")
+    verdict[possible & (det_c > 0.0) & (shifted <= 0.0)] = Stability.ALWAYS_STABLE
+    verdict[possible & (det_c > 0.0) & (shifted > 0.0)] = Stability.THRESHOLD
+    verdict[possible & (det_c == 0.0) & (shifted < 0.0)] = Stability.ALWAYS_STABLE
+    verdict[possible & (det_c < 0.0) & (shifted < 0.0)] = Stability.REVERSED_THRESHOLD
+    unknown = np.isnan(routh.trace_damping + routh.det_damping + routh.det_stiffness + routh.cross)
+    verdict[unknown] = ""
+    return verdict
+
+
+def rigid_thresholds(
+    stiffness: ArrayLike,
+    damping: ArrayLike,
+    speed: ArrayLike,
+    *,
+    load: ArrayLike | None = None,
+    radial_clearance: ArrayLike | None = None,
+) -> WhirlThresholds:
+    """Critical mass and whirl frequency of a rigid rotor over whole arrays.
+
+    Parameters
+    ----------
+    stiffness, damping : (..., 2, 2) arrays
+        [N/m], [N s/m]
+    speed : array
+        Shaft speed [rad/s], broadcast against the leading dimensions.
+    load, radial_clearance : arrays, optional
+        [N], [m]; for the dimensionless critical mass.
+
+    Returns
+    -------
+    WhirlThresholds
+
+    Notes
+    -----
+    m x'' + C x' + K x = 0 has the characteristic polynomial
+
+        m^2 s^4 + m tr(C) s^3 + (m tr(K) + det C) s^2 + q s + det K,
+        q = K_xx C_yy + K_yy C_xx - K_xy C_yx - K_yx C_xy.
+
+    A pair of roots lies at +-i nu where m nu^2 = K_e = q/tr(C) and nu^2 = det(K - K_e I)/det C,
+    hence M_cr = K_e det C/det(K - K_e I) (Dal Eq. 22-24). Routh and Hurwitz want tr C, q and det K
+    above zero and det C K_e > m det(K - K_e I). So where one of the three is not above zero no mass
+    is stable (a marginal case counts as unstable: it does not decay); otherwise
+
+    ======== =============== ==================
+    det C    det(K - K_e I)  stability
+    ======== =============== ==================
+    > 0      > 0             threshold
+    >= 0     <= 0            always_stable
+    <= 0     >= 0            always_unstable
+    < 0      < 0             reversed_threshold
+    ======== =============== ==================
+
+    with both zero counting as unstable.
+    """
+    routh = routh_coefficients(stiffness, damping)
+    omega = np.asarray(speed, dtype=float)
+    verdict = _verdicts(routh)
+    exists = (verdict == Stability.THRESHOLD) | (verdict == Stability.REVERSED_THRESHOLD)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        gamma2 = np.where(exists, routh.det_shifted / routh.det_damping, np.nan)
+        mass = np.where(exists, routh.equivalent_stiffness / gamma2, np.nan)
+        whirl = np.sqrt(gamma2)
+        ratio = whirl / omega
+        scale = (
+            np.nan
+            if load is None or radial_clearance is None
+            else np.asarray(radial_clearance) * omega**2 / np.asarray(load)
+        )
+        dimensionless = mass * scale
+    shape = np.broadcast_shapes(np.shape(mass), np.shape(ratio), np.shape(dimensionless))
+    return WhirlThresholds(
+        stability=np.broadcast_to(verdict, shape),
+        critical_mass=np.broadcast_to(mass, shape),
+        whirl_frequency=np.broadcast_to(whirl, shape),
+        whirl_frequency_ratio=np.broadcast_to(ratio, shape),
+        critical_mass_dimensionless=np.broadcast_to(dimensionless, shape),
+    )
+
+
+def rigid_threshold(
+    stiffness: ArrayLike,
+    damping: ArrayLike,
+    speed: float,
+    *,
+    load: float | None = None,
+    radial_clearance: float | None = None,
+) -> WhirlThreshold:
+    """Critical mass and whirl frequency of a rigid rotor at one operating point.
+
+    Parameters
+    ----------
+    stiffness, damping : (2, 2) arrays
+        [N/m], [N s/m]
+    speed : float
+        [rad/s]
+    load, radial_clearance : float, optional
+        [N], [m]; for the dimensionless critical mass.
+
+    Raises
+    ------
+    InputError
+        A coefficient is not finite, or the speed is not above zero.
+
+    Examples
+    --------
+    A plain film carries no load and whirls at half the speed: K_xy = -K_yx = C omega/2.
+
+    >>> import numpy as np
+    >>> threshold = rigid_threshold([[1.0, 5.0], [-5.0, 1.0]], np.eye(2), speed=10.0)
+    >>> str(threshold.stability), threshold.critical_mass, threshold.whirl_frequency_ratio
+    ('threshold', 0.04, 0.5)
+    """
+    for name, value in (("stiffness", stiffness), ("damping", damping)):
+        if np.shape(value) != (2, 2) or not np.all(np.isfinite(value)):
+            raise InputError("must be a 2 x 2 matrix of finite numbers", key=name, value=value)
+    if not (np.isfinite(speed) and speed > 0.0):
+        raise InputError("must be above 0 (rad/s)", key="speed", value=speed)
+    found = rigid_thresholds(
+        stiffness, damping, speed, load=load, radial_clearance=radial_clearance
+    )
+
+    def number(value: Array) -> float | None:
+        return float(value) if np.isfinite(value) else None
+
+    return WhirlThreshold(
+        stability=Stability(str(found.stability)),
+        critical_mass=number(found.critical_mass),
+        whirl_frequency=number(found.whirl_frequency),
+        whirl_frequency_ratio=number(found.whirl_frequency_ratio),
+        critical_mass_dimensionless=number(found.critical_mass_dimensionless),
+    )
+
+
+def flexible_critical_mass(
+    stiffness: ArrayLike, damping: ArrayLike, shaft_stiffness: ArrayLike
+) -> Array:
+    """Critical disc mass of a symmetric Jeffcott rotor with massless journals, per bearing [kg].
+
+    Parameters
+    ----------
+    stiffness, damping : (..., 2, 2) arrays
+        Of one bearing [N/m], [N s/m].
+    shaft_stiffness : array
+        Of the shaft at the disc, per bearing (half the shaft's) [N/m]; infinity: a rigid shaft.
+
+    Notes
+    -----
+    At the threshold the film reacts like a spring K_e with the whirl frequency nu of the rigid
+    rotor; the shaft lies in series with it, so that m nu^2 = K_e k_s/(K_e + k_s) (Lund's argument,
+    J. Eng. Ind. 96, 1974). The whirl frequency ratio does not change. NaN without a threshold.
+    """
+    routh = routh_coefficients(stiffness, damping)
+    rigid = rigid_thresholds(stiffness, damping, 1.0).critical_mass
+    return np.asarray(rigid / (1.0 + routh.equivalent_stiffness / np.asarray(shaft_stiffness)))
