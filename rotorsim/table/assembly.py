@@ -1,0 +1,182 @@
+"""From operating points to a dataset, and what every table must satisfy."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import TableError
+from ..status import SolveStatus
+from .netcdf import scenario_digest
+from .variables import (
+    COEFFICIENTS,
+    DIMENSIONS,
+    SCALARS,
+    TABLE_VERSION,
+    TEXTS,
+    cf_attributes,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..operating_point import OperatingPoint
+
+
+def from_points(points: Sequence[OperatingPoint], attributes: dict[str, Any]) -> xr.Dataset:
+    """Dataset over thermal model (in order of appearance), clearance and speed (ascending)."""
+    if not points:
+        raise TableError("a table needs at least one operating point", key="points")
+    models = list(dict.fromkeys(str(p.thermal_model) for p in points))
+    clearances = sorted({float(p.radial_clearance) for p in points})
+    speeds = sorted({float(p.speed) for p in points})
+    shape = (len(models), len(clearances), len(speeds))
+    row: dict[tuple[int, int, int], OperatingPoint] = {}
+    places = [{v: i for i, v in enumerate(axis)} for axis in (models, clearances, speeds)]
+    for point in points:
+        key = (str(point.thermal_model), float(point.radial_clearance), float(point.speed))
+        index = (places[0][key[0]], places[1][key[1]], places[2][key[2]])
+        if index in row:
+            raise TableError(f"{_describe(key)} occurs twice", key="points")
+        row[index] = point
+    for index in np.ndindex(shape):
+        if index not in row:
+            key = (models[index[0]], clearances[index[1]], speeds[index[2]])
+            raise TableError(f"{_describe(key)} is missing", key="points")
+    ordered = [row[index] for index in np.ndindex(shape)]
+    columns = _columns(ordered)
+    variables = {name: values.reshape(shape) for name, values in columns.items()}
+    return build(
+        dict(zip(DIMENSIONS, (models, clearances, speeds), strict=True)), variables, attributes
+    )
+
+
+def build(
+    coordinates: dict[str, Any], variables: dict[str, np.ndarray], attributes: dict[str, Any]
+) -> xr.Dataset:
+    """Dataset with CF attributes from coordinates (in order) and arrays over all of them."""
+    import xarray as xr
+
+    dimensions = tuple(coordinates)
+    coords = {
+        name: (
+            name,
+            _text(values) if name == "thermal_model" else np.asarray(values, dtype=float),
+            cf_attributes(name),
+        )
+        for name, values in coordinates.items()
+    }
+    data = {name: (dimensions, values, cf_attributes(name)) for name, values in variables.items()}
+    return xr.Dataset(data, coords, attributes)
+
+
+def _describe(key: tuple[str, float, float]) -> str:
+    return f"the point ({key[0]}, clearance {key[1]:.6g} m, {key[2]:.6g} rad/s)"
+
+
+def _text(values: Sequence[Any]) -> np.ndarray:
+    result = np.empty(len(values), dtype=object)
+    result[:] = [str(v) for v in values]
+    return result
+
+
+def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
+    stiffness = np.array([np.asarray(p.stiffness, dtype=float).ravel() for p in points])
+    damping = np.array([np.asarray(p.damping, dtype=float).ravel() for p in points])
+    values = np.hstack([stiffness, damping])
+    columns: dict[str, np.ndarray] = {name: values[:, i] for i, name in enumerate(COEFFICIENTS)}
+    for name in SCALARS:
+        column = [getattr(p, name) for p in points]
+        columns[name] = np.array([np.nan if v is None else float(v) for v in column])
+    columns["iterations"] = np.array([int(p.iterations) for p in points])
+    for name in TEXTS:
+        column = [getattr(p, name) for p in points]
+        columns[name] = _text(["" if v is None else v for v in column])
+    return columns
+
+
+def stack(
+    datasets: Sequence[xr.Dataset], dimension: str, values: Sequence[float], units: str
+) -> xr.Dataset:
+    """Join datasets along a new dimension, put before the speed."""
+    import xarray as xr
+
+    if len(datasets) != len(values) or not datasets:
+        raise TableError("one value for each table is needed", key=dimension, value=values)
+    if dimension in datasets[0].variables:
+        raise TableError("the name is taken; choose another", key=dimension)
+    if np.any(np.diff(np.asarray(values, dtype=float)) <= 0.0):
+        raise TableError("values must ascend", key=dimension, value=values)
+    axis = xr.Variable(dimension, np.asarray(values, dtype=float), {"units": units})
+    try:
+        joined = xr.concat(
+            datasets,
+            dim=xr.DataArray(axis),
+            join="exact",
+            combine_attrs="drop_conflicts",
+            data_vars="all",
+            coords="minimal",
+            compat="equals",
+        )
+    except ValueError as error:
+        raise TableError(
+            f"the tables do not share their other coordinates ({error})", key=dimension
+        ) from error
+    order = [d for d in joined["kxx"].dims if d not in (dimension, "speed")]
+    return joined.transpose(*order, dimension, "speed")
+
+
+def with_provenance(dataset: xr.Dataset) -> xr.Dataset:
+    """Add what every file states: format, program version, date, scenario digest."""
+    attributes = {
+        key: value if isinstance(value, (str, int, float)) else str(value)
+        for key, value in dataset.attrs.items()
+        if value is not None
+    }
+    attributes.setdefault("Conventions", "CF-1.11")
+    attributes.setdefault("title", "Journal bearing coefficients over speed")
+    attributes.setdefault("rotorsim_version", _program_version())
+    now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    attributes.setdefault("date", now)
+    attributes["rotorsim_table_version"] = TABLE_VERSION
+    if "scenario" in attributes:
+        attributes["scenario_sha256"] = scenario_digest(str(attributes["scenario"]))
+    return dataset.assign_attrs(attributes)
+
+
+def _program_version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("rotorsim")
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def check(dataset: xr.Dataset, source: str | Path | None = None) -> None:
+    """Raise `TableError` unless the dataset is a usable table."""
+    missing = [n for n in (*DIMENSIONS, *COEFFICIENTS, "status") if n not in dataset.variables]
+    if missing:
+        raise TableError(f"variables are missing: {', '.join(missing)}", source=source)
+    dims = dataset["kxx"].dims
+    if not set(DIMENSIONS) <= set(dims) or dims[-1] != "speed":
+        raise TableError(
+            f"dimensions must be thermal_model, radial_clearance and, last, speed, not {dims}",
+            source=source,
+        )
+    if any(dataset[name].dims != dims for name in (*COEFFICIENTS, "status")):
+        raise TableError("kxx ... cyy and status must share their dimensions", source=source)
+    speed = np.asarray(dataset["speed"].values, dtype=float)
+    if not speed.size or not np.all(np.isfinite(speed)) or np.any(np.diff(speed) <= 0.0):
+        raise TableError("speeds must be finite and ascend", source=source, key="speed")
+    converged = np.asarray(dataset["status"].values == str(SolveStatus.CONVERGED))
+    for name in COEFFICIENTS:
+        bad = converged & ~np.isfinite(dataset[name].values)
+        if bad.any():
+            place = np.argwhere(bad)[0]
+            at = ", ".join(f"{d}={dataset[d].values[i]}" for d, i in zip(dims, place, strict=True))
+            raise TableError(f"not a number at a converged point ({at})", source=source, key=name)
