@@ -46,7 +46,29 @@ class InputError(RotorsimError, ValueError):
 
 
 class ScenarioError(InputError):
-    """A scenario file cannot be used."""
+    """A scenario file cannot be used.
+
+    Parameters
+    ----------
+    others : tuple of str, optional
+        Further errors found in the same file, one line each; shown after the first.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        source: str | Path | None = None,
+        key: str | None = None,
+        value: object = None,
+        others: tuple[str, ...] = (),
+    ) -> None:
+        super().__init__(message, source=source, key=key, value=value)
+        self.others = others
+
+    def __str__(self) -> str:
+        """Give the first error, then one line for each further one."""
+        return "\n".join([super().__str__(), *(f"  also: {line}" for line in self.others)])
 
 
 class TableError(InputError):

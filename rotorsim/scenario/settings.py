@@ -1,0 +1,91 @@
+"""Frozen settings that a scenario holds beside the model objects (SI units)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class RotorKind(StrEnum):
+    """Kinds of rotor that a scenario can describe."""
+
+    RIGID = "rigid"
+
+
+class OrbitForce(StrEnum):
+    """Which film force an orbit is integrated with."""
+
+    LINEAR = "linear"
+    """K and C from the coefficient table."""
+    FILM = "film"
+    """Nonlinear film force."""
+
+
+class BearingProfile(StrEnum):
+    """Shorthands for the usual multi-lobe bores."""
+
+    ELLIPTICAL = "elliptical"
+    THREE_LOBE = "three_lobe"
+    OFFSET_HALVES = "offset_halves"
+
+
+@dataclass(frozen=True)
+class SpeedRamp:
+    """Run-up or coast-down: speed [rad/s] changing linearly from start to stop.
+
+    Parameters
+    ----------
+    start, stop : float
+        [rad/s]
+    duration : float
+        [s]
+    """
+
+    start: float
+    stop: float
+    duration: float
+
+    @property
+    def acceleration(self) -> float:
+        """Angular acceleration [rad/s2], negative when coasting down."""
+        return (self.stop - self.start) / self.duration
+
+
+@dataclass(frozen=True)
+class OrbitSettings:
+    """What to simulate in the time domain.
+
+    Parameters
+    ----------
+    radial_clearance : float
+        The one of the scenario's clearances that the orbit runs in [m].
+    speed : float or SpeedRamp
+        [rad/s]
+    revolutions : int or None
+        How long, at constant speed; None with a ramp, which has its own duration.
+    force : OrbitForce
+    initial_displacement : tuple of float
+        From the static equilibrium, load frame [m].
+    initial_velocity : tuple of float
+        [m/s]
+    """
+
+    radial_clearance: float
+    speed: float | SpeedRamp
+    revolutions: int | None
+    force: OrbitForce = OrbitForce.LINEAR
+    initial_displacement: tuple[float, float] = (0.0, 0.0)
+    initial_velocity: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class StabilitySettings:
+    """The stability map's own axis.
+
+    Parameters
+    ----------
+    mass : tuple of float
+        Rotor masses per bearing, ascending [kg]; empty: left to the map.
+    """
+
+    mass: tuple[float, ...] = ()

@@ -1,0 +1,287 @@
+"""The unit edge: text with a unit becomes an SI number here, and nowhere else.
+
+Pint knows the units; this module decides what text it is shown. A value is one decimal number
+followed by a short product of unit names with small whole powers, so that no input can evaluate
+anything or take long.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tokenize
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING
+
+from .errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+
+MAX_TEXT = 100
+"""Characters in the longest text that is looked at."""
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of physical quantity.
+
+    Parameters
+    ----------
+    name : str
+        As a message calls it, for example ``length``.
+    unit : str
+        SI unit in which values leave this module.
+    example : str
+        A valid text.
+    smallest, largest : float
+        Magnitudes [SI] outside of which a value other than 0 is taken for a slip of the unit.
+    """
+
+    name: str
+    unit: str
+    example: str
+    smallest: float
+    largest: float
+
+
+_KINDS = (
+    Kind("length", "m", "100 um", 1e-12, 1e3),
+    Kind("temperature", "K", "40 degC", 1.0, 3e3),
+    Kind("angle", "rad", "90 deg", 1e-12, 1e3),
+    Kind("slope", "m/m", "0.1 mm/m", 1e-12, 1.0),
+    Kind("speed", "rad/s", "3000 rpm", 1e-9, 1e6),
+    Kind("velocity", "m/s", "5 mm/s", 1e-15, 1e4),
+    Kind("time", "s", "2 s", 1e-9, 1e6),
+    Kind("mass", "kg", "1200 kg", 1e-9, 1e9),
+    Kind("force", "N", "10 kN", 1e-9, 1e12),
+    Kind("pressure", "Pa", "70 kPa", 1e-6, 1e11),
+    Kind("unbalance", "kg*m", "500 g*mm", 1e-15, 1e6),
+    Kind("dynamic viscosity", "Pa*s", "0.0277 Pa*s", 1e-8, 1e6),
+    Kind("kinematic viscosity", "m^2/s", "32 cSt", 1e-10, 1e3),
+    Kind("temperature coefficient", "1/K", "0.034 / delta_degC", 1e-9, 1e1),
+    Kind("density", "kg/m^3", "860 kg/m^3", 1e-3, 1e5),
+    Kind("specific heat", "J/(kg*K)", "2000 J/(kg*delta_degC)", 1e-1, 1e6),
+    Kind("thermal conductivity", "W/(m*K)", "0.13 W/(m*delta_degC)", 1e-5, 1e5),
+    Kind("heat transfer coefficient", "W/(m^2*K)", "80 W/(m^2*delta_degC)", 1e-6, 1e8),
+)
+QUANTITIES = {kind.name: kind for kind in _KINDS}
+"""Every kind of quantity, by name."""
+
+_NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)(?![\d.,_])\s*", re.ASCII)
+_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*|\*\*|[*/^()]|[+-]?[0-9]+")
+_POWER_WITHOUT_SIGN = re.compile(r"\b(m|mm|cm|um|in|ft|s)([234])\b")
+_SYMBOLS = (
+    ("⁻¹", "^-1"),
+    ("⁻²", "^-2"),
+    ("²", "^2"),
+    ("³", "^3"),
+    ("°C", "degC"),
+    ("°F", "degF"),
+    ("°", "deg"),
+    ("µ", "u"),
+    ("μ", "u"),
+    ("·", "*"),
+    ("⋅", "*"),
+    ("×", "*"),
+    ("**", "^"),
+)
+_OWN_NAMES = {
+    "mil": "thou",
+    "mils": "thou",
+    "Hz": "revolutions_per_second",
+    "hertz": "revolutions_per_second",
+    "rev": "revolution",
+    "revs": "revolution",
+}
+"""Names that mean something else to Pint (an angle, 1/s, nothing) than on a bearing's drawing."""
+_HINTS = {
+    "C": 'Celsius is written "degC"',
+    "F": 'Fahrenheit is written "degF"',
+    "kg": 'as a force write "kgf" or "N"',
+    "lb": 'as a force write "lbf"',
+    "kHz": 'write "Hz" or "rpm"',
+    "psig": 'supply pressures are gauge pressures; write "psi"',
+}
+
+
+def parse_quantity(
+    text: object,
+    kind: str,
+    *,
+    example: str | None = None,
+    key: str | None = None,
+    source: str | None = None,
+) -> float:
+    """Read one number with its unit.
+
+    Parameters
+    ----------
+    text : object
+        Should be text such as ``"100 um"``; anything else is refused with advice.
+    kind : str
+        What it must be: a name in `QUANTITIES`.
+    example : str, optional
+        Valid text to show in messages; by default the kind's own.
+    key, source : str, optional
+        Where the value stands, for messages.
+
+    Returns
+    -------
+    float
+        In the kind's SI unit; temperatures in K.
+
+    Raises
+    ------
+    InputError
+        Not a finite number with a unit of that kind.
+
+    Notes
+    -----
+    A temperature has an offset ("40 degC" is 313.15 K), a temperature difference has none: in
+    products and quotients degC means the difference ("J/(kg*degC)"). "mil" is a thousandth of an
+    inch, "Hz" counts revolutions, "reyn" is lbf s/in^2.
+
+    Examples
+    --------
+    >>> parse_quantity("100 um", "length")
+    0.0001
+    >>> parse_quantity("104 degF", "temperature")
+    313.15
+    >>> round(parse_quantity("2.9e-6 reyn", "dynamic viscosity"), 6)
+    0.019995
+    """
+    wanted = QUANTITIES[kind]
+    example = example or wanted.example
+    try:
+        return _parse(text, wanted)
+    except _Refusal as refusal:
+        raise InputError(
+            f'{refusal}; write for example "{example}"', source=source, key=key, value=text
+        ) from None
+
+
+class _Refusal(Exception):
+    """Why a text is not the quantity wanted."""
+
+
+def _parse(text: object, kind: Kind) -> float:
+    if isinstance(text, bool) or not isinstance(text, str | int | float):
+        raise _Refusal(f"must be one {kind.name} with its unit, in quotes")
+    if not isinstance(text, str):
+        raise _Refusal(f"is a bare number: a {kind.name} needs its unit, in quotes")
+    if len(text) > MAX_TEXT:
+        raise _Refusal(f"is too long to be a {kind.name} ({len(text)} characters)")
+    number = _NUMBER.match(text)
+    if number is None:
+        raise _Refusal(f"must be a {kind.name}: a finite decimal number, then its unit")
+    unit = text[number.end() :].strip()
+    if not unit:
+        raise _Refusal(f"lacks its unit: a {kind.name} is needed")
+    offset, factor = _conversion(unit, kind)
+    value = offset + factor * float(number.group(1))
+    if not math.isfinite(value):
+        raise _Refusal("must be finite")
+    short = float(f"{value:.12g}")  # "100 um" is 0.0001, not 9.999999999999999e-05
+    value = short if abs(short - value) <= 4.0 * math.ulp(value) else value
+    if kind.name == "temperature" and value <= 0.0:
+        raise _Refusal("must be above absolute zero")
+    if value != 0.0 and not kind.smallest <= abs(value) <= kind.largest:
+        raise _Refusal(
+            f"is beyond every sensible {kind.name} ({kind.smallest:g} to {kind.largest:g} "
+            f"{kind.unit})"
+        )
+    return value
+
+
+@lru_cache(maxsize=512)
+def _conversion(text: str, kind: Kind) -> tuple[float, float]:
+    """``(offset, factor)``: SI value = offset + factor * number."""
+    registry = _registry()
+    try:
+        unit = registry.parse_units(_checked_unit_text(text), as_delta=True)
+        given = registry.Quantity(1.0, unit)
+        if given.dimensionality != _dimensionality(kind):
+            raise _Refusal(_wrong_dimension(text, kind))
+        _check_meaning(unit, text, kind)
+        zero, thousand = (registry.Quantity(n, unit).to(kind.unit).magnitude for n in (0.0, 1e3))
+        return zero, (thousand - zero) / 1e3
+    except (
+        _pint_error(),
+        tokenize.TokenError,
+        ArithmeticError,
+        AssertionError,
+        AttributeError,
+        LookupError,
+        SyntaxError,
+        TypeError,
+        ValueError,
+    ) as error:
+        raise _Refusal(_unknown_unit(text, error)) from None
+
+
+def _checked_unit_text(text: str) -> str:
+    """Rewrite unit text for Pint: names, products, quotients and one-digit powers only."""
+    refusal = _Refusal(f'does not hold a readable unit ("{text}")')
+    for symbol, plain in _SYMBOLS:
+        text = text.replace(symbol, plain)
+    text = _POWER_WITHOUT_SIGN.sub(r"\1^\2", text)
+    if text.startswith("/"):
+        text = "1" + text
+    text = re.sub(r"[A-Za-z_]\w*", lambda name: _OWN_NAMES.get(name[0], name[0]), text)
+    tokens = _TOKEN.findall(text)
+    if "".join(tokens) != re.sub(r"\s+", "", text) or tokens.count("(") != tokens.count(")"):
+        raise refusal
+    for before, token, after in zip(["", *tokens], tokens, [*tokens[1:], ""], strict=False):
+        if token[-1].isdigit() and not token[0].isalpha():
+            is_power = before == "^" and len(token.lstrip("+-")) == 1 and after != "^"
+            if not (is_power or (token == "1" and before == "" and after == "/")):
+                raise refusal
+        elif token == "^" and not (after and after[-1].isdigit() and not after[0].isalpha()):
+            raise refusal
+    return text
+
+
+def _check_meaning(unit: pint.Unit, text: str, kind: Kind) -> None:
+    """Refuse what has the right dimension and still another meaning."""
+    if kind.name == "temperature" and "delta" in str(unit):
+        raise _Refusal(f'"{text}" is a temperature difference, a temperature is needed')
+    if kind.name == "slope":  # radians and ratios of lengths say the same
+        return
+    registry = _registry()
+    root = registry.Quantity(0.0, unit).to_root_units().units
+    if root != registry.Quantity(1.0, kind.unit).to_root_units().units:
+        hint = ' (say "rpm", "rev/s" or "rad/s")' if kind.name == "speed" else ""
+        raise _Refusal(f'"{text}" does not say of what: it is not a unit of {kind.name}{hint}')
+
+
+def _wrong_dimension(text: str, kind: Kind) -> str:
+    hint = _HINTS.get(text)
+    return f'"{text}" is not a unit of {kind.name}' + (f" ({hint})" if hint else "")
+
+
+def _unknown_unit(text: str, error: Exception) -> str:
+    name = getattr(error, "unit_names", None)
+    unknown = name if isinstance(name, str) else text
+    hint = _HINTS.get(text)
+    return f'holds no known unit ("{unknown}")' + (f" ({hint})" if hint else "")
+
+
+@cache
+def _dimensionality(kind: Kind) -> object:
+    return _registry().Quantity(1.0, kind.unit).dimensionality
+
+
+def _pint_error() -> type[Exception]:
+    import pint
+
+    return pint.PintError
+
+
+@cache
+def _registry() -> pint.UnitRegistry:
+    """Pint's registry, built when first needed (it takes a tenth of a second)."""
+    import pint
+
+    return pint.UnitRegistry()
