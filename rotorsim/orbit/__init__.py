@@ -1,0 +1,76 @@
+"""Journal orbits in time: rotor, film force and loads, integrated with SciPy, and their analysis.
+
+Everything is SI and in the load frame. `simulate(OrbitProblem(...))` gives an `Orbit`;
+`simulate_linear` is the short way with given stiffness and damping.
+"""
+
+from .equilibrium import find_equilibrium, linearize_force
+from .forces import (
+    BearingForce,
+    CallableForce,
+    LinearForce,
+    ShortBearingForce,
+    constant_coefficients,
+)
+from .integrate import simulate, simulate_pieces
+from .linear import simulate_linear
+from .loads import BaseMotion, BaseShock, Controller, HarmonicForce, StepForce
+from .modes import Growth, Modes, fit_modes, growth_rate
+from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
+from .problem import Method, OrbitProblem
+from .recognition import Recognition, recognise, steady_part
+from .rotor import RotorModel, jeffcott_rotor, rigid_rotor
+from .spectrum import (
+    Cascade,
+    Ellipse,
+    Spectrum,
+    cascade,
+    orbit_ellipse,
+    poincare_points,
+    spectrum,
+    whirl_frequency_ratio,
+)
+from .speed import SpeedSchedule
+
+__all__ = [
+    "BaseMotion",
+    "BaseShock",
+    "BearingForce",
+    "CallableForce",
+    "Cascade",
+    "Controller",
+    "Ellipse",
+    "Growth",
+    "HarmonicForce",
+    "LinearForce",
+    "Method",
+    "Modes",
+    "Orbit",
+    "OrbitEvent",
+    "OrbitProblem",
+    "OrbitStatus",
+    "Recognition",
+    "RotorModel",
+    "ShortBearingForce",
+    "Spectrum",
+    "SpeedSchedule",
+    "StepForce",
+    "cascade",
+    "concatenate",
+    "constant_coefficients",
+    "find_equilibrium",
+    "fit_modes",
+    "growth_rate",
+    "jeffcott_rotor",
+    "linearize_force",
+    "orbit_ellipse",
+    "poincare_points",
+    "recognise",
+    "rigid_rotor",
+    "simulate",
+    "simulate_linear",
+    "simulate_pieces",
+    "spectrum",
+    "steady_part",
+    "whirl_frequency_ratio",
+]

@@ -1,0 +1,236 @@
+"""Integration of the rotor on its film with SciPy, piece by piece."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
+
+from ..errors import InputError
+from .equilibrium import find_equilibrium
+from .forces import LinearForce
+from .loads import pack_loads
+from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
+from .problem import OrbitProblem
+from .recognition import recognise
+from .right_hand_side import FilmSeries, Rates, initial_state, right_hand_side
+
+Array = NDArray[np.float64]
+
+_CHUNK_REVOLUTIONS = 32
+
+
+@dataclass(frozen=True)
+class _Solution:
+    """One integrated piece: SciPy's status, and where the film broke down (t, x, y)."""
+
+    t: Array
+    y: Array
+    status: int
+    message: str = ""
+    touch: tuple[float, float, float] | None = None
+
+
+@dataclass(frozen=True)
+class _Run:
+    """What stays the same from piece to piece."""
+
+    problem: OrbitProblem
+    equilibrium: tuple[float, float]
+    rates: Rates
+    film: FilmSeries
+    tolerance: Array
+    touch: Callable[[float, Array], float]
+
+
+def simulate(problem: OrbitProblem) -> Orbit:
+    """Integrate one orbit to its end, touch-down or failure.
+
+    Returns
+    -------
+    Orbit
+        With ``status``: never an exception for what happens in the run.
+
+    Raises
+    ------
+    InputError
+        Start outside the clearance, speeds outside the coefficients' range, or a static load that
+        no position carries.
+    """
+    orbit = concatenate(simulate_pieces(problem))
+    if orbit.status is not OrbitStatus.COMPLETED or not problem.schedule.is_constant:
+        return orbit
+    found = recognise(orbit)
+    return replace(orbit, status=found.status, message=found.message)
+
+
+def simulate_pieces(
+    problem: OrbitProblem, revolutions: int = _CHUNK_REVOLUTIONS
+) -> Iterator[Orbit]:
+    """Integrate piece by piece, so that a long run can be streamed, thinned or written out.
+
+    Parameters
+    ----------
+    problem : OrbitProblem
+    revolutions : int
+        Of the shaft in each piece.
+
+    Yields
+    ------
+    Orbit
+        Status ``running`` but for the last.
+    """
+    run, state = _prepare(problem)
+    edges = _edges(problem, revolutions)
+    samples = problem.samples_per_revolution
+    # a run that ends on a sample keeps it, rounding or not
+    count = math.floor(problem.schedule.revolutions * samples + 1e-9) + 1
+    done = 0
+    for piece, (start, stop) in enumerate(itertools.pairwise(edges)):
+        last = piece == len(edges) - 2
+        upto = count if last else _samples_before(problem, stop)
+        angles = 2.0 * np.pi * np.arange(done, upto) / samples
+        times = np.clip(problem.schedule.time_at(angles), start, stop)
+        done = upto
+        ends = times if times.size and times[-1] >= stop else np.append(times, stop)
+        solution = _solve(run, state, (start, stop), ends)
+        orbit = _piece(run, solution, angles)
+        if orbit.status is not OrbitStatus.COMPLETED or last:
+            yield orbit
+            return
+        yield replace(orbit, status=OrbitStatus.RUNNING)
+        state = solution.y[:, -1]
+
+
+def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> _Solution:
+    """Integrate one piece; an integrator that gives up gives back what it has."""
+    problem = run.problem
+    failed = _Solution(np.zeros(0), np.zeros((state.size, 0)), -1)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")  # SciPy says on stderr what the status says as well
+        try:
+            found = solve_ivp(
+                run.rates,
+                span,
+                state,
+                method=problem.method.value,
+                t_eval=times,
+                events=run.touch if problem.stop_at_contact else None,
+                rtol=problem.relative_tolerance,
+                atol=run.tolerance,
+            )
+        except InputError:
+            raise
+        except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+            return replace(failed, message=f"{error}.")
+    if found.status == 1:
+        when, where = float(found.t_events[0][0]), found.y_events[0][0]
+        return _Solution(found.t, found.y, 1, touch=(when, float(where[0]), float(where[1])))
+    # the list is empty where the first step already fails
+    y = found.y if len(found.t) else failed.y
+    good = int(np.sum(np.all(np.isfinite(y), axis=0)))
+    status = found.status if good == y.shape[1] else -1
+    return _Solution(np.asarray(found.t)[:good], y[:, :good], status, str(found.message))
+
+
+def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
+    speed = problem.schedule.speeds[0]
+    force, rotor = problem.force, problem.rotor
+    if problem.equilibrium is not None:
+        equilibrium = problem.equilibrium
+    elif isinstance(force, LinearForce):
+        equilibrium = force.position(speed)
+    else:
+        equilibrium = find_equilibrium(force, problem.static_load, speed)
+    state = initial_state(problem, equilibrium)
+    clearance, least = force.radial_clearance, problem.minimum_film
+    size = rotor.mass.shape[0]
+    tolerance = np.full(state.size, 1e-3 * problem.relative_tolerance * clearance)
+    tolerance[size : 2 * size] *= max(problem.schedule.speeds)
+
+    def touch(_t: float, s: Array) -> float:
+        return clearance - least - math.hypot(s[0], s[1])
+
+    touch.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
+    touch.direction = -1.0  # pyright: ignore[reportFunctionMemberAccess]
+    if problem.stop_at_contact and touch(0.0, state) <= 0.0:
+        raise InputError(
+            "the journal must start inside the clearance circle "
+            f"(film above {least:g} m, clearance {clearance:g} m)",
+            key="orbit.initial_displacement",
+            value=problem.initial_displacement,
+        )
+    rates, film = right_hand_side(problem)
+    return _Run(problem, equilibrium, rates, film, tolerance, touch), state
+
+
+def _edges(problem: OrbitProblem, revolutions: int) -> list[float]:
+    """List where pieces end [s]: at whole revolutions and at corners of loads and speed."""
+    schedule = problem.schedule
+    turns = np.arange(0.0, schedule.revolutions, max(revolutions, 1))
+    edges = {float(t) for t in schedule.time_at(2.0 * np.pi * turns)} | set(schedule.times)
+    _, times = pack_loads(problem.loads, problem.rotor)
+    edges |= {float(t) for t in times[:, 1:3].ravel() if 0.0 < t < schedule.duration}
+    ordered = sorted(edges)
+    least = 1e-9 * schedule.duration
+    kept = [ordered[0]]
+    kept += [t for t in ordered[1:] if t - kept[-1] > least]
+    kept[-1] = schedule.duration
+    return kept
+
+
+def _samples_before(problem: OrbitProblem, t: float) -> int:
+    """Count samples earlier than t (a sample on the edge belongs to the next piece)."""
+    turns = problem.schedule.angle_at(t) / (2.0 * np.pi) * problem.samples_per_revolution
+    return math.ceil(float(turns) - 1e-9)
+
+
+def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
+    """One piece's samples as an orbit."""
+    problem = run.problem
+    size = problem.rotor.mass.shape[0]
+    count = min(angles.size, solution.t.size)
+    t, y = solution.t[:count], solution.y[:, :count]
+    speed = problem.schedule.speed_at(t)
+    motion = np.column_stack([y[0], y[1], y[size], y[size + 1], speed])
+    film = run.film(motion)
+    status, message, events = OrbitStatus.COMPLETED, "", ()
+    if solution.touch is not None:
+        when, x, y_end = solution.touch
+        status = OrbitStatus.TOUCH_DOWN
+        message = (
+            f"film below {problem.minimum_film * 1e6:.3g} um after {when:.6g} s "
+            f"({problem.schedule.angle_at(when) / (2.0 * np.pi):.4g} revolutions)"
+        )
+        if isinstance(problem.force, LinearForce):
+            message += "; linear coefficients hold for small motions only"
+        events = (OrbitEvent("touch_down", when, x, y_end),)
+    elif solution.status < 0:
+        status = OrbitStatus.INTEGRATION_FAILED
+        message = f"{solution.message} Try another method, or a looser tolerance."
+    return Orbit(
+        t=t,
+        x=y[0].copy(),
+        y=y[1].copy(),
+        vx=y[size].copy(),
+        vy=y[size + 1].copy(),
+        speed=speed,
+        angle=angles[:count],
+        fx=film[:, 0],
+        fy=film[:, 1],
+        displacements=np.ascontiguousarray(y[:size].T),
+        samples_per_revolution=problem.samples_per_revolution,
+        radial_clearance=problem.force.radial_clearance,
+        equilibrium=run.equilibrium,
+        force_model=problem.force.name,
+        thermal_model=problem.thermal_model,
+        status=status,
+        message=message,
+        events=events,
+    )

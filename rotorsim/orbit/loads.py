@@ -1,0 +1,159 @@
+"""What acts on the rotor besides film and unbalance, each given in the load frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .rotor import RotorModel
+
+Array = NDArray[np.float64]
+
+CONSTANT, HARMONIC, HALF_SINE = 0.0, 1.0, 2.0
+"""Time functions the compiled right-hand side knows."""
+
+
+@dataclass(frozen=True)
+class StepForce:
+    """A force (fx, fy) [N] on a station from `start` until `stop` [s]."""
+
+    force: tuple[float, float]
+    start: float = 0.0
+    stop: float = math.inf
+    station: int = 0
+
+
+@dataclass(frozen=True)
+class HarmonicForce:
+    """A force fx cos(W t + px), fy cos(W t + py): forces [N], frequency W [rad/s], phases [rad]."""
+
+    force: tuple[float, float]
+    frequency: float
+    phase: tuple[float, float] = (0.0, 0.0)
+    start: float = 0.0
+    stop: float = math.inf
+    station: int = 0
+
+
+@dataclass(frozen=True)
+class BaseMotion:
+    """Harmonic motion of the bearing housing: displacement ax cos(W t + px), ay cos(W t + py).
+
+    The orbit's coordinates stay those of the journal in its bearing; the rotor is loaded with
+    minus its mass times the base's acceleration.
+
+    Parameters
+    ----------
+    displacement : tuple of float
+        Amplitudes [m].
+    frequency : float
+        [rad/s]
+    phase : tuple of float
+        [rad]
+    """
+
+    displacement: tuple[float, float]
+    frequency: float
+    phase: tuple[float, float] = (0.0, 0.0)
+    start: float = 0.0
+    stop: float = math.inf
+
+
+@dataclass(frozen=True)
+class BaseShock:
+    """One half-sine pulse of base acceleration (ax, ay) [m/s2], `duration` long [s]."""
+
+    acceleration: tuple[float, float]
+    duration: float
+    start: float = 0.0
+
+
+Load = StepForce | HarmonicForce | BaseMotion | BaseShock
+
+
+@dataclass(frozen=True)
+class Controller:
+    """Linear feedback of the journal's motion: an actuator's force on the journal.
+
+    z' = A z + B s and force = C z + D s, s = (x - xr, y - yr, vx, vy).
+
+    Parameters
+    ----------
+    a, b, c, d : arrays of shape (k, k), (k, 4), (2, k), (2, 4)
+        k = 0 for plain state feedback.
+    reference : tuple of float
+        (xr, yr) [m].
+    """
+
+    a: Array
+    b: Array
+    c: Array
+    d: Array
+    reference: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        k = self.a.shape[0]
+        for name, shape in (("a", (k, k)), ("b", (k, 4)), ("c", (2, k)), ("d", (2, 4))):
+            if getattr(self, name).shape != shape:
+                raise InputError(
+                    f"must have the shape {shape}",
+                    key=f"controller.{name}",
+                    value=getattr(self, name).shape,
+                )
+
+    @classmethod
+    def state_feedback(cls, gain: Array, reference: tuple[float, float] = (0.0, 0.0)) -> Controller:
+        """Force = -gain s, gain a (2, 4) array [N/m, N s/m]."""
+        return cls(np.zeros((0, 0)), np.zeros((0, 4)), np.zeros((2, 0)), -gain, reference)
+
+
+def pack_loads(loads: Sequence[Load], rotor: RotorModel) -> tuple[Array, Array]:
+    """Pack loads into arrays for the compiled right-hand side.
+
+    Returns
+    -------
+    shapes : (k, 2, 2n) array
+        Amplitudes of the cosine and sine parts on every degree of freedom [N].
+    numbers : (k, 4) array
+        Kind, start, stop [s], frequency [rad/s].
+    """
+    size = rotor.mass.shape[0]
+    shapes, numbers = np.zeros((len(loads), 2, size)), np.zeros((len(loads), 4))
+    for shape, number, load in zip(shapes, numbers, loads, strict=True):
+        match load:
+            case StepForce():
+                _check_station(load.station, rotor)
+                shape[0, 2 * load.station : 2 * load.station + 2] = load.force
+                number[:] = CONSTANT, load.start, load.stop, 0.0
+            case HarmonicForce():
+                _check_station(load.station, rotor)
+                place = slice(2 * load.station, 2 * load.station + 2)
+                shape[:, place] = _cosine_and_sine(load.force, load.phase)
+                number[:] = HARMONIC, load.start, load.stop, load.frequency
+            case BaseMotion():
+                base = _cosine_and_sine(load.displacement, load.phase) * load.frequency**2
+                shape[:] = np.tile(base, rotor.stations) @ rotor.mass.T
+                number[:] = HARMONIC, load.start, load.stop, load.frequency
+            case BaseShock():
+                pull = np.tile(np.asarray(load.acceleration), rotor.stations)
+                shape[0] = -rotor.mass @ pull
+                stop = load.start + load.duration
+                number[:] = HALF_SINE, load.start, stop, math.pi / load.duration
+    return shapes, numbers
+
+
+def _check_station(station: int, rotor: RotorModel) -> None:
+    if not 0 <= station < rotor.stations:
+        raise InputError(
+            f"must be from 0 to {rotor.stations - 1}", key="orbit.load.station", value=station
+        )
+
+
+def _cosine_and_sine(amplitude: tuple[float, float], phase: tuple[float, float]) -> Array:
+    a, p = np.asarray(amplitude), np.asarray(phase)
+    return np.stack([a * np.cos(p), -a * np.sin(p)])

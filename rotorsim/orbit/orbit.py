@@ -1,0 +1,135 @@
+"""The journal's path: what an orbit simulation hands back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class OrbitStatus(StrEnum):
+    """How a run ended, and what its last part is."""
+
+    RUNNING = "running"
+    """A piece of a run that goes on."""
+    COMPLETED = "completed"
+    """Ran to its end, still in transition (or too short to tell)."""
+    SETTLED = "settled"
+    """Ran to its end, at rest there."""
+    PERIODIC = "periodic"
+    """Ran to its end on a closed orbit locked to the shaft (its turns: see `recognise`)."""
+    LIMIT_CYCLE = "limit_cycle"
+    """Ran to its end whirling with steady amplitude at a frequency of its own."""
+    QUASI_PERIODIC = "quasi_periodic"
+    """Ran to its end with steady amplitude, whirl and shaft frequency side by side."""
+    TOUCH_DOWN = "touch_down"
+    """The film fell below the given minimum: the run stopped there."""
+    INTEGRATION_FAILED = "integration_failed"
+    """The integrator gave up; the samples up to there are good."""
+
+
+@dataclass(frozen=True)
+class OrbitEvent:
+    """Something that happened: name, time [s], journal position [m]."""
+
+    name: str
+    time: float
+    x: float
+    y: float
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """Samples of the journal's motion in its bearing, load frame, SI.
+
+    Attributes
+    ----------
+    t : (n,) array
+        [s]; the samples are equally spaced in shaft angle.
+    x, y : (n,) arrays
+        Journal centre from the bearing's centre [m].
+    vx, vy : (n,) arrays
+        [m/s]
+    speed : (n,) array
+        Of the shaft [rad/s].
+    angle : (n,) array
+        Of the shaft [rad]; revolutions are angle/(2 pi).
+    fx, fy : (n,) arrays
+        Film force on the journal [N].
+    displacements : (n, 2k) array
+        Of all k stations of the rotor [m]; the first two columns are x and y.
+    samples_per_revolution : int
+    radial_clearance : float
+        [m]
+    equilibrium : (float, float)
+        Static position at the first speed [m].
+    force_model, thermal_model : str
+    status : OrbitStatus
+    message : str
+        What ended the run early, or what was recognised.
+    events : tuple of OrbitEvent
+    """
+
+    t: Array
+    x: Array
+    y: Array
+    vx: Array
+    vy: Array
+    speed: Array
+    angle: Array
+    fx: Array
+    fy: Array
+    displacements: Array
+    samples_per_revolution: int
+    radial_clearance: float
+    equilibrium: tuple[float, float]
+    force_model: str
+    thermal_model: str
+    status: OrbitStatus
+    message: str = ""
+    events: tuple[OrbitEvent, ...] = ()
+
+    @property
+    def revolutions(self) -> Array:
+        """Turns of the shaft at each sample [-]."""
+        return self.angle / (2.0 * np.pi)
+
+    @property
+    def eccentricity(self) -> Array:
+        """Distance from the bearing's centre [m]."""
+        return np.hypot(self.x, self.y)
+
+    @property
+    def eccentricity_ratio(self) -> Array:
+        """Eccentricity over radial clearance [-]."""
+        return self.eccentricity / self.radial_clearance
+
+    @property
+    def min_film(self) -> Array:
+        """Smallest film thickness of the plain bearing, c - e [m]."""
+        return self.radial_clearance - self.eccentricity
+
+    def part(self, first: int, last: int | None = None, step: int = 1) -> Orbit:
+        """Cut out samples first to last (excluded), every `step`-th, as an orbit of their own."""
+        chosen = slice(first, last, step)
+        return replace(
+            self,
+            samples_per_revolution=max(self.samples_per_revolution // step, 1),
+            **{n: getattr(self, n)[chosen] for n in _SERIES},
+        )
+
+
+_SERIES = ("t", "x", "y", "vx", "vy", "speed", "angle", "fx", "fy", "displacements")
+
+
+def concatenate(pieces: Iterable[Orbit]) -> Orbit:
+    """Join pieces of one run; status, message and events are the run's."""
+    parts = list(pieces)
+    joined = {n: np.concatenate([getattr(p, n) for p in parts]) for n in _SERIES}
+    events = tuple(event for p in parts for event in p.events)
+    return replace(parts[-1], equilibrium=parts[0].equilibrium, events=events, **joined)

@@ -1,0 +1,109 @@
+"""One orbit to be simulated, ready to run."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .forces import BearingForce
+from .loads import Controller, Load
+from .rotor import RotorModel
+from .speed import SpeedSchedule
+
+Array = NDArray[np.float64]
+
+
+class Method(StrEnum):
+    """SciPy integrators.
+
+    ``LSODA`` changes between Adams and BDF formulas as the film stiffens; it is the default.
+    ``DOP853`` is explicit, of order 8, for smooth non-stiff runs and cross-checks; ``Radau`` is
+    implicit, for very light journals close to the wall.
+    """
+
+    LSODA = "LSODA"
+    DOP853 = "DOP853"
+    RADAU = "Radau"
+
+
+@dataclass(frozen=True)
+class OrbitProblem:
+    """Rotor, film force, loads, speed and start (SI, load frame).
+
+    Parameters
+    ----------
+    force : BearingForce
+    rotor : RotorModel
+    schedule : SpeedSchedule
+    static_load : (float, float)
+        Shared out over the stations as their masses [N]; (0, 0) switches it off.
+    initial_displacement : (float, float)
+        Of the journal from `equilibrium` [m].
+    initial_velocity : (float, float)
+        Of the journal [m/s].
+    equilibrium : (float, float) or None
+        Where the start is measured from [m]; None: the force's own static position at the first
+        speed.
+    initial_state : array or None
+        Displacements, velocities and controller states, in place of the three above.
+    loads : tuple of Load
+        Steps, harmonic forces, motion of the base.
+    controller : Controller or None
+        Actuator force on the journal.
+    minimum_film : float
+        Film thickness at which the run ends with ``touch_down`` [m] (the surfaces' roughness).
+    stop_at_contact : bool
+        With False a linear model runs on outside the clearance circle, where it means nothing;
+        for tests of the model itself.
+    samples_per_revolution : int
+    thermal_model : str
+        Label of the film behind the force.
+    method : Method
+    relative_tolerance : float
+        Of one integration step; the absolute one is 1e-3 of it times the clearance.
+    """
+
+    force: BearingForce
+    rotor: RotorModel
+    schedule: SpeedSchedule
+    static_load: tuple[float, float] = (0.0, 0.0)
+    initial_displacement: tuple[float, float] = (0.0, 0.0)
+    initial_velocity: tuple[float, float] = (0.0, 0.0)
+    equilibrium: tuple[float, float] | None = None
+    initial_state: Array | None = None
+    loads: tuple[Load, ...] = ()
+    controller: Controller | None = None
+    minimum_film: float = 0.0
+    stop_at_contact: bool = True
+    samples_per_revolution: int = 64
+    thermal_model: str = "isothermal"
+    method: Method = Method.LSODA
+    relative_tolerance: float = 1e-8
+
+    def __post_init__(self) -> None:
+        clearance = self.force.radial_clearance
+        if not (math.isfinite(clearance) and clearance > 0.0):
+            raise InputError("must be above 0", key="bearing.radial_clearance", value=clearance)
+        if not 0.0 <= self.minimum_film < clearance:
+            raise InputError(
+                f"must lie between 0 and the clearance of {clearance:g} m",
+                key="orbit.minimum_film",
+                value=self.minimum_film,
+            )
+        if self.samples_per_revolution < 4:
+            raise InputError(
+                "must be 4 or more",
+                key="orbit.samples_per_revolution",
+                value=self.samples_per_revolution,
+            )
+        if not 1e-13 <= self.relative_tolerance <= 1e-2:
+            raise InputError(
+                "must lie between 1e-13 and 1e-2",
+                key="orbit.relative_tolerance",
+                value=self.relative_tolerance,
+            )

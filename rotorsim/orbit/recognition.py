@@ -1,0 +1,139 @@
+"""What the last part of a run is: at rest, locked to the shaft, whirling steadily, or neither."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .orbit import Orbit, OrbitStatus
+from .spectrum import orbit_ellipse, poincare_points, whirl_frequency_ratio
+
+Array = NDArray[np.float64]
+
+_AT_REST = 1e-4
+"""Motion over clearance that counts as none."""
+_STEADY = 2e-3
+"""Relative change of amplitude, and of mean position over amplitude, that counts as none."""
+_LEAST_REVOLUTIONS = 16
+_BLOCK = 4
+"""Revolutions in which amplitudes are taken to find where the steady part begins."""
+_LONGEST_PERIOD = 8
+
+
+@dataclass(frozen=True)
+class Recognition:
+    """Verdict on a run's last part.
+
+    Attributes
+    ----------
+    status : OrbitStatus
+        ``settled``, ``periodic``, ``limit_cycle``, ``quasi_periodic`` or ``completed``.
+    message : str
+    steady_from : int or None
+        First sample of the steady part; None where there is none.
+    period : int or None
+        Of a periodic orbit, in turns of the shaft.
+    whirl_frequency_ratio : float or None
+        Of a steady whirl.
+    """
+
+    status: OrbitStatus
+    message: str
+    steady_from: int | None = None
+    period: int | None = None
+    whirl_frequency_ratio: float | None = None
+
+
+def recognise(orbit: Orbit) -> Recognition:
+    """Recognise what the second half of a run at constant speed has come to.
+
+    Notes
+    -----
+    Amplitudes (root mean square about the mean) of the third and the last quarter are compared:
+    steady means equal to 0.2 %. A steady orbit is periodic if the points at one shaft angle repeat
+    within 0.2 % of the amplitude after 1 to 8 turns; else it whirls at a frequency of its own.
+    """
+    size, per_turn = orbit.t.size, orbit.samples_per_revolution
+    if size < _LEAST_REVOLUTIONS * per_turn:
+        return Recognition(OrbitStatus.COMPLETED, "too short to tell what it comes to")
+    third, last = orbit.part(size // 2, 3 * size // 4), orbit.part(3 * size // 4)
+    before, after = _swing(third), _swing(last)
+    clearance = orbit.radial_clearance
+    if after < _AT_REST * clearance and after <= max(before, 1e-8 * clearance):
+        return Recognition(OrbitStatus.SETTLED, "at rest", steady_from=_rest_from(orbit))
+    drift = abs(_middle(last)[0] - _middle(third)[0])
+    period = _period(last, after)
+    if period is None and (abs(after - before) > _STEADY * after or drift > 5 * _STEADY * after):
+        trend = "growing" if after > before else "decaying"
+        return Recognition(OrbitStatus.COMPLETED, f"still {trend}")
+    start = _steady_from(orbit, after)
+    if period is not None:
+        turns = "turn" if period == 1 else "turns"
+        message = f"repeats after {period} {turns} of the shaft"
+        return Recognition(OrbitStatus.PERIODIC, message, start, period)
+    ratio = whirl_frequency_ratio(last)
+    if ratio is not None:
+        # beneath a steady unbalance response a whirl may still be fading or growing
+        earlier, later = (orbit_ellipse(p, abs(ratio)).semi_major for p in (third, last))
+        if abs(later - earlier) > 0.01 * later:
+            trend = "growing" if later > earlier else "decaying"
+            return Recognition(OrbitStatus.COMPLETED, f"whirl at {ratio:.4f} still {trend}")
+    shaken = orbit_ellipse(last).semi_major > 0.01 * after
+    status = OrbitStatus.QUASI_PERIODIC if shaken else OrbitStatus.LIMIT_CYCLE
+    message = "steady whirl" if ratio is None else f"steady whirl at {ratio:.4f} of shaft speed"
+    return Recognition(status, message, start, whirl_frequency_ratio=ratio)
+
+
+def steady_part(orbit: Orbit) -> Orbit | None:
+    """Cut off the transient; None where the run has not become steady."""
+    start = recognise(orbit).steady_from
+    return None if start is None else orbit.part(start)
+
+
+def _swing(orbit: Orbit) -> float:
+    """Root mean square distance from the mean position [m]."""
+    mean, z, weights = _middle(orbit)
+    return float(np.sqrt(np.sum(weights * np.abs(z - mean) ** 2)))
+
+
+def _middle(orbit: Orbit) -> tuple[complex, NDArray[np.complex128], Array]:
+    """Mean of z = x + i y, z, and the weights: smooth, for windows hold no whole whirl cycles."""
+    count = orbit.t.size
+    weights = (1.0 - np.cos(2.0 * np.pi * (np.arange(count) + 0.5) / count)) / count
+    z = orbit.x + 1j * orbit.y
+    return complex(np.sum(weights * z)), z, weights
+
+
+def _period(orbit: Orbit, amplitude: float) -> int | None:
+    points = poincare_points(orbit)
+    for turns in range(1, _LONGEST_PERIOD + 1):
+        if points.t.size < 2 * turns + 1:
+            return None
+        # the first against the last of its kind as well: a slow drift is no repetition
+        same_phase = (points.t.size - 1) // turns * turns
+        gaps = np.hypot(points.x[turns:] - points.x[:-turns], points.y[turns:] - points.y[:-turns])
+        whole = np.hypot(points.x[same_phase] - points.x[0], points.y[same_phase] - points.y[0])
+        if max(float(np.max(gaps)), float(whole)) < _STEADY * amplitude:
+            return turns
+    return None
+
+
+def _rest_from(orbit: Orbit) -> int:
+    """First sample after the last one that is away from the end position."""
+    away = np.hypot(orbit.x - orbit.x[-1], orbit.y - orbit.y[-1])
+    outside = np.flatnonzero(away > _AT_REST * orbit.radial_clearance)
+    return int(outside[-1]) + 1 if outside.size else 0
+
+
+def _steady_from(orbit: Orbit, amplitude: float) -> int:
+    """First sample of the last stretch whose blocks all have the final amplitude (to 5 %)."""
+    block = _BLOCK * orbit.samples_per_revolution
+    start = orbit.t.size - block
+    while start >= block:
+        swing = _swing(orbit.part(start - block, start))
+        if abs(swing - amplitude) > 0.05 * amplitude:
+            break
+        start -= block
+    return start
