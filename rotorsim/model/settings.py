@@ -98,7 +98,7 @@ class FilmSettings:
     cavitation: Cavitation = Cavitation.REYNOLDS
     inception: Inception = Inception.MAX_FILM
     mesh: MeshSize = field(default_factory=MeshSize)
-    ruptured_friction: RupturedFriction = RupturedFriction.WHOLE
+    ruptured_friction: RupturedFriction = RupturedFriction.LIQUID
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,230 @@
+"""Pressure under each rupture condition; Reynolds' is a linear complementarity problem.
+
+``reynolds``: p >= 0, and where p = 0 the film may not be pushed: the primal-dual active set (a
+semi-smooth Newton method: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13, 2002) ends after
+finitely many steps, since the matrix is an M-matrix.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import Cavitation
+from .banded import FilmFactor, factor_operator
+from .kernels import kernel
+from .operator import FilmOperator
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+MAX_ACTIVE_SET_STEPS = 80
+
+
+@dataclass(frozen=True)
+class PressureSolution:
+    """Pressure and where the film is full.
+
+    Attributes
+    ----------
+    pressure : (n, m) array
+        Gauge [Pa]; groove cells carry the supply pressure.
+    raw : (n, m) array
+        Before negative pressures are dropped (``half_sommerfeld``); else the same.
+    full : (n, m) bool array
+        Cells whose continuity the pressure solves.
+    factor : FilmFactor
+        Of the matrix on those cells, for further right-hand sides.
+    steps : int
+        Linear solves.
+    converged : bool
+    """
+
+    pressure: Array
+    raw: Array
+    full: Flags
+    factor: FilmFactor
+    steps: int
+    converged: bool
+
+
+def solve_pressure(
+    operator: FilmOperator,
+    cavitation: Cavitation,
+    *,
+    squeeze: Array | None = None,
+    start: Flags | None = None,
+    region: NDArray[np.int64] | None = None,
+) -> PressureSolution:
+    """Pressure for the operator's film.
+
+    Parameters
+    ----------
+    squeeze : (n, m) array, optional
+        dh/dt [m/s].
+    start : (n, m) bool array, optional
+        Cells taken as full in the first step (a neighbouring solution's).
+    region : (n,) int array, optional
+        Stretches of film (see `FilmMesh.region`). If given, each line along the film keeps one
+        full stretch per region besides those fed by a groove under pressure: a ruptured film then
+        stays ruptured up to the next inception. Thermal films need it, since the derivative of
+        F1/F0 could otherwise re-form film inside the ruptured sector.
+    """
+    source = source_term(operator, squeeze)
+    film = ~operator.held
+    if cavitation in (Cavitation.FULL_SOMMERFELD, Cavitation.HALF_SOMMERFELD):
+        factor = factor_operator(operator, film)
+        pressure = _with_held(operator, factor.solve(source))
+        if cavitation is Cavitation.HALF_SOMMERFELD:
+            kept = np.where(operator.held, pressure, np.maximum(pressure, 0.0))
+            return PressureSolution(kept, pressure, film & (kept > 0.0), factor, 1, True)
+        return PressureSolution(pressure, pressure, film, factor, 1, True)
+    solution = _active_set(operator, source, film, film if start is None else start & film)
+    if region is None:
+        return solution
+    allowed = np.empty_like(film)
+    allowed[:] = film
+    _one_stretch(solution.pressure, operator.held, region, allowed)
+    if (solution.full & ~allowed).any():
+        again = _active_set(operator, source, allowed, solution.full & allowed)
+        return replace(again, steps=solution.steps + again.steps)
+    return solution
+
+
+def source_term(operator: FilmOperator, squeeze: Array | None = None) -> Array:
+    """Right-hand side [m3/s]: drag, known pressures and squeeze."""
+    source = operator.drag[0] - operator.drag[1]
+    source = source + np.sum(
+        np.where(operator.linked, 0.0, operator.conductance * operator.outer_pressure), axis=0
+    )
+    if squeeze is not None:
+        source = source - squeeze * operator.area
+    return np.where(operator.held, 0.0, source)
+
+
+def _with_held(operator: FilmOperator, pressure: Array) -> Array:
+    return np.where(operator.held, operator.outer_pressure[0], pressure)
+
+
+def _active_set(
+    operator: FilmOperator, source: Array, allowed: Flags, full: Flags
+) -> PressureSolution:
+    scale = float(np.abs(source).max())
+    if not full.any():
+        full = allowed & (source > 0.0)
+    steps, converged = 0, False
+    factor = factor_operator(operator, full) if full.any() else None
+    pressure = np.zeros(source.shape)
+    while steps < MAX_ACTIVE_SET_STEPS and factor is not None:
+        pressure = factor.solve(source)
+        steps += 1
+        update = np.empty_like(full)
+        changed = _update_set(
+            operator.conductance, operator.linked, source, pressure, full, allowed,
+            1e-13 * scale, update,
+        )  # fmt: skip
+        if changed == 0:
+            converged = True
+            break
+        full = update
+        if not full.any():
+            break
+        factor = factor_operator(operator, full)
+    if factor is None or not full.any():
+        # No cell is pushed: the whole film is ruptured, which is the solution.
+        factor = factor_operator(operator, np.zeros_like(allowed) | (~operator.held))
+        empty = np.zeros_like(allowed)
+        nothing = _with_held(operator, np.zeros_like(source))
+        return PressureSolution(nothing, nothing, empty, factor, steps, True)
+    pressure = _with_held(operator, pressure)
+    return PressureSolution(pressure, pressure, full, factor, steps, converged)
+
+
+@kernel
+def _update_set(conductance, linked, source, pressure, full, allowed, tolerance, update):
+    """Next guess of the full cells; returns how many changed."""
+    n, m = full.shape
+    changed = 0
+    for i in range(n):
+        before = i - 1 if i > 0 else n - 1
+        after = i + 1 if i < n - 1 else 0
+        for j in range(m):
+            if full[i, j]:
+                keep = pressure[i, j] > 0.0
+            elif not allowed[i, j]:
+                keep = False
+            else:
+                inflow = source[i, j]
+                if linked[0, i, j]:
+                    inflow += conductance[0, i, j] * pressure[before, j]
+                if linked[1, i, j]:
+                    inflow += conductance[1, i, j] * pressure[after, j]
+                if linked[2, i, j]:
+                    inflow += conductance[2, i, j] * pressure[i, j - 1]
+                if linked[3, i, j]:
+                    inflow += conductance[3, i, j] * pressure[i, j + 1]
+                keep = inflow > tolerance
+            update[i, j] = keep
+            if keep != full[i, j]:
+                changed += 1
+    return changed
+
+
+@kernel
+def _one_stretch(pressure, held, region, allowed):
+    """Forbid, on each line and in each region, full stretches other than the one with the peak.
+
+    A stretch that touches a groove under pressure is fed by it and stays.
+    """
+    n, m = pressure.shape
+    first = 0
+    for i in range(n):  # start where a region starts, so that none is cut by the array's end
+        if region[i] != region[i - 1]:
+            first = i
+            break
+    for j in range(m):
+        offset = 0
+        while offset < n:
+            i0 = (first + offset) % n
+            length = 1
+            while offset + length < n and region[(first + offset + length) % n] == region[i0]:
+                length += 1
+            if region[i0] >= 0:
+                _keep_peak(pressure, held, allowed, first + offset, length, j)
+            offset += length
+
+
+@kernel
+def _keep_peak(pressure, held, allowed, start, length, j):
+    n = pressure.shape[0]
+    peak, at = 0.0, -1
+    for s in range(length):
+        i = (start + s) % n
+        if not held[i, j] and pressure[i, j] > peak:
+            peak, at = pressure[i, j], s
+    if at < 0:
+        return
+    lower, upper = at, at
+    while lower > 0 and pressure[(start + lower - 1) % n, j] > 0.0:
+        lower -= 1
+    while upper < length - 1 and pressure[(start + upper + 1) % n, j] > 0.0:
+        upper += 1
+    s = 0
+    while s < length:
+        i = (start + s) % n
+        if pressure[i, j] <= 0.0 or (lower <= s <= upper):
+            s += 1
+            continue
+        end, fed = s, False
+        while end < length and pressure[(start + end) % n, j] > 0.0:
+            fed = fed or held[(start + end) % n, j]
+            end += 1
+        before, behind = (start + s - 1) % n, (start + end) % n
+        fed = fed or (held[before, j] and pressure[before, j] > 0.0)
+        fed = fed or (held[behind, j] and pressure[behind, j] > 0.0)
+        if not fed:
+            for t in range(s, end):
+                allowed[(start + t) % n, j] = False
+        s = end

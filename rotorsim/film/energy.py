@@ -1,0 +1,324 @@
+"""The film's 3-D energy equation, marched with the flow (Dal Eq. 10, corrected).
+
+Finite volumes on the layers of the film: every layer of a cell exchanges the very oil that the
+pressure equation moves, so the flux across the film vanishes on both walls to rounding and enthalpy
+is conserved. Convection along the film is second-order upwind, across it hybrid (central where
+conduction governs); conduction acts across the film. One tridiagonal solve a cell, in the order of
+the flow, solves everything in one pass where nothing flows back; a few passes where it does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .flow import FilmFlow
+from .geometry import Thickness
+from .kernels import kernel
+from .layers import LayerIntegrals
+from .operator import FilmOperator
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WallTemperatures:
+    """Both walls [K]; an insulated wall takes no heat at all.
+
+    Attributes
+    ----------
+    bush : (n, m) array
+    shaft : float
+    bush_insulated : bool
+    """
+
+    bush: Array
+    shaft: float
+    bush_insulated: bool = False
+
+
+@dataclass(frozen=True)
+class EnergyProblem:
+    """Everything in the energy equation but the temperature: linear in it.
+
+    Attributes
+    ----------
+    flow : FilmFlow
+    layers : LayerIntegrals
+    heating : (3, n, m) array
+        Multipliers of the three parts of the dissipation of a layer (see `dissipation`).
+    conductance : (n, m) array
+        k (liquid area)/(h dz): between neighbouring layers [W/K].
+    heat_capacity : float
+        rho c_p [J/(m3 K)].
+    order : (n,) int array
+        Columns in the order of the march.
+    axial_order : (m,) int array
+        From where the flow along the axis starts, outwards.
+    held : (n, m) bool array
+    linked : (4, n, m) bool array
+    dx, dy : arrays
+        Cell lengths [m].
+    """
+
+    flow: FilmFlow
+    layers: LayerIntegrals
+    heating: Array
+    conductance: Array
+    heat_capacity: float
+    order: NDArray[np.int64]
+    axial_order: NDArray[np.int64]
+    held: NDArray[np.bool_]
+    linked: NDArray[np.bool_]
+    dx: Array
+    dy: Array
+
+
+def dissipation(
+    operator: FilmOperator,
+    film: Thickness,
+    layers: LayerIntegrals,
+    flow: FilmFlow,
+    surface_speed: float,
+) -> Array:
+    """Multipliers of a layer's dissipation, per cell: (3, n, m).
+
+    The shear stress is tau = h p' (z - G) + U/(h F_0) around and h p' (z - G) along the axis; the
+    power in a layer, int h tau^2/mu dz over the cell, is thus
+
+        D = s_2 int (z - G)^2/mu dz + s_1 int (z - G)/mu dz + s_0 int dz/mu.
+
+    The squared gradients are taken face by face with the pressure equation's own differences and
+    shared between the cells behind the face, so that the sum over the film equals the shaft's
+    friction power exactly (discrete Green's identity).
+    """
+    heating = np.zeros((3, *operator.area.shape))
+    _heating(
+        operator.linked, operator.conductance, operator.face_thickness, operator.gap,
+        operator.held, operator.area, operator.dx, operator.dy, film.center, layers.f0,
+        flow.step, flow.liquid_fraction, surface_speed, heating,
+    )  # fmt: skip
+    return heating
+
+
+@kernel
+def _heating(
+    linked, conductance, face_h, gap, held, area, dx, dy, h, f0, step, fraction, speed, heating
+):
+    n, m = area.shape
+    for i in range(n):
+        for j in range(m):
+            if held[i, j]:
+                continue
+            for face in range(4):
+                if conductance[face, i, j] == 0.0:
+                    continue
+                share = 0.5 if linked[face, i, j] else 1.0
+                width = dy[j] if face < 2 else dx[i]
+                thickness, rise = face_h[face, i, j], step[face, i, j]
+                # int over the face's reach of h^3 p'^2, and of h p'
+                heating[2, i, j] += share * thickness**3 * rise * rise * width / gap[face, i, j]
+                if face < 2:
+                    heating[1, i, j] += 2.0 * speed * share * thickness * rise * width / f0[i, j]
+            heating[0, i, j] = (
+                fraction[i, j] * speed * speed * area[i, j] / (h[i, j] * f0[i, j] ** 2)
+            )
+
+
+def march(
+    problem: EnergyProblem,
+    viscosity: Array,
+    walls: WallTemperatures,
+    inlet_temperature: Array,
+    temperature: Array,
+    *,
+    passes: int = 1,
+    source: Array | None = None,
+) -> float:
+    """Solve for the temperature in place; return the last pass's largest change [K].
+
+    Parameters
+    ----------
+    viscosity : (n, m, k) array
+        [Pa s]
+    inlet_temperature : (4, n, m, k) array or broadcastable
+        Of the oil that enters through a face behind which no film lies [K].
+    temperature : (n, m, k) array
+        First guess, overwritten [K].
+    passes : int
+        Sweeps; one is exact where nothing flows back.
+    source : (n, m, k) array, optional
+        Further heat [W] (manufactured solutions).
+    """
+    change = 0.0
+    flow, layers = problem.flow, problem.layers
+    extra = np.zeros((1, 1, 1)) if source is None else source
+    for _ in range(passes):
+        change = _sweep(
+            flow.drive, flow.drag, flow.shared, flow.inlet, layers.pressure_share,
+            layers.shear_share, layers.g, viscosity, problem.heating, problem.conductance,
+            problem.heat_capacity, problem.order, problem.axial_order, problem.held,
+            problem.linked, problem.dx, problem.dy, walls.bush, walls.shaft, walls.bush_insulated,
+            inlet_temperature, extra, temperature,
+        )  # fmt: skip
+    return change
+
+
+@kernel
+def _sweep(
+    drive, drag, shared, inlet, pressure_share, shear_share, g, viscosity, heating, conductance,
+    heat_capacity, order, axial_order, held, linked, dx, dy, bush, shaft, bush_insulated,
+    inlet_temperature, extra, temperature,
+):  # fmt: skip
+    n, m, layers = temperature.shape
+    dz = 1.0 / layers
+    lower, diagonal = np.empty(layers), np.empty(layers)
+    upper, right = np.empty(layers), np.empty(layers)
+    largest = 0.0
+    with_extra = extra.shape[0] == n
+    for c in range(n):
+        i = order[c]
+        before = i - 1 if i > 0 else n - 1
+        twice = before - 1 if before > 0 else n - 1
+        after = i + 1 if i < n - 1 else 0
+        for s in range(m):
+            j = axial_order[s]
+            if held[i, j]:
+                continue
+            south, north = max(j - 1, 0), min(j + 1, m - 1)
+            # Second order where the cell upstream is joined to this one; weights of the
+            # extrapolation from centre to face.
+            own_w = 0.0
+            if linked[0, i, j] and not inlet[i, j]:
+                own_w = dx[i] / (dx[i] + dx[before])
+            west_w = 0.0
+            if own_w > 0.0 and linked[0, before, j] and not inlet[before, j]:
+                west_w = dx[before] / (dx[before] + dx[twice])
+            south_w = dy[j] / (dy[j] + dy[south]) if linked[2, i, j] else 0.0
+            north_w = dy[j] / (dy[j] + dy[north]) if linked[3, i, j] else 0.0
+            in_s_w, in_n_w = 0.0, 0.0
+            if linked[2, i, j] and linked[2, i, south]:
+                in_s_w = dy[south] / (dy[south] + dy[south - 1])
+            if linked[3, i, j] and linked[3, i, north]:
+                in_n_w = dy[north] / (dy[north] + dy[north + 1])
+            g_w, g_e = drive[0, i, j], drive[1, i, j]
+            g_s, g_n = drive[2, i, j], drive[3, i, j]
+            c_w, c_e = drag[0, i, j], drag[1, i, j]
+            carried_w = (not shared[0, i, j]) and linked[0, i, j]
+            kz = conductance[i, j]
+            rising = 0.0
+            ratio = g[i, j]
+            for k in range(layers):
+                a_own, b_own = pressure_share[i, j, k], shear_share[i, j, k]
+                if shared[0, i, j]:
+                    q_w = 0.5 * (
+                        g_w * (a_own + pressure_share[before, j, k])
+                        + c_w * (b_own + shear_share[before, j, k])
+                    )
+                elif carried_w:
+                    q_w = c_w * shear_share[before, j, k]
+                else:
+                    q_w = g_w * a_own + c_w * b_own
+                if shared[1, i, j]:
+                    q_e = 0.5 * (
+                        g_e * (a_own + pressure_share[after, j, k])
+                        + c_e * (b_own + shear_share[after, j, k])
+                    )
+                else:
+                    q_e = g_e * a_own + c_e * b_own
+                q_s = g_s * a_own
+                if shared[2, i, j]:
+                    q_s = 0.5 * (q_s + g_s * pressure_share[i, south, k])
+                q_n = g_n * a_own
+                if shared[3, i, j]:
+                    q_n = 0.5 * (q_n + g_n * pressure_share[i, north, k])
+                q_w *= heat_capacity
+                q_e *= heat_capacity
+                q_s *= heat_capacity
+                q_n *= heat_capacity
+                center, rhs = 0.0, 0.0
+                if q_w > 0.0:
+                    center += q_w
+                    if inlet[i, j]:
+                        rhs += q_w * inlet_temperature[0, i, j, k]
+                    else:
+                        t_w = temperature[before, j, k]
+                        rhs += q_w * (t_w + west_w * (t_w - temperature[twice, j, k]))
+                if q_e > 0.0:
+                    if own_w > 0.0:
+                        center += q_e * own_w
+                        rhs += q_e * own_w * temperature[before, j, k]
+                else:
+                    center -= q_e
+                    if linked[1, i, j]:
+                        rhs -= q_e * temperature[after, j, k]
+                    else:
+                        rhs -= q_e * inlet_temperature[1, i, j, k]
+                if q_s > 0.0:
+                    center += q_s
+                    if linked[2, i, j]:
+                        t_s = temperature[i, south, k]
+                        if in_s_w > 0.0:
+                            t_s += in_s_w * (t_s - temperature[i, south - 1, k])
+                        rhs += q_s * t_s
+                    else:
+                        rhs += q_s * inlet_temperature[2, i, j, k]
+                elif north_w > 0.0:
+                    center -= q_s * north_w
+                    rhs -= q_s * north_w * temperature[i, north, k]
+                if q_n < 0.0:
+                    center -= q_n
+                    if linked[3, i, j]:
+                        t_n = temperature[i, north, k]
+                        if in_n_w > 0.0:
+                            t_n += in_n_w * (t_n - temperature[i, north + 1, k])
+                        rhs -= q_n * t_n
+                    else:
+                        rhs -= q_n * inlet_temperature[3, i, j, k]
+                elif south_w > 0.0:
+                    center += q_n * south_w
+                    rhs += q_n * south_w * temperature[i, south, k]
+                # dissipation in the layer
+                fluidity = 1.0 / viscosity[i, j, k]
+                z0 = k * dz - ratio
+                z1 = z0 + dz
+                rhs += fluidity * (
+                    heating[2, i, j] * (z1 * z1 * z1 - z0 * z0 * z0) / 3.0
+                    + heating[1, i, j] * 0.5 * (z1 * z1 - z0 * z0)
+                    + heating[0, i, j] * dz
+                )
+                if with_extra:
+                    rhs += extra[i, j, k]
+                # across the film: rising is what enters from the layer below
+                a_below = 0.0
+                if k > 0:
+                    a_below = max(rising, kz + 0.5 * rising, 0.0)
+                elif not bush_insulated:
+                    center += 2.0 * kz
+                    rhs += 2.0 * kz * bush[i, j]
+                rising += q_w - q_e + q_s - q_n
+                a_above = 0.0
+                if k < layers - 1:
+                    a_above = max(-rising, kz - 0.5 * rising, 0.0)
+                else:
+                    center += 2.0 * kz
+                    rhs += 2.0 * kz * shaft
+                lower[k] = -a_below
+                upper[k] = -a_above
+                diagonal[k] = center + a_below + a_above
+                right[k] = rhs
+            # Thomas
+            for k in range(1, layers):
+                factor = lower[k] / diagonal[k - 1]
+                diagonal[k] -= factor * upper[k - 1]
+                right[k] -= factor * right[k - 1]
+            value = right[layers - 1] / diagonal[layers - 1]
+            largest = max(largest, abs(value - temperature[i, j, layers - 1]))
+            temperature[i, j, layers - 1] = value
+            for k in range(layers - 2, -1, -1):
+                value = (right[k] - upper[k] * value) / diagonal[k]
+                largest = max(largest, abs(value - temperature[i, j, k]))
+                temperature[i, j, k] = value
+    return largest

@@ -1,0 +1,130 @@
+"""Where the journal floats: position under a load, or attitude at an eccentricity ratio.
+
+The linearised film is the Jacobian of the force, so position and temperature are found in one loop
+(`solve_thermal_film`'s `move`). A plain bearing needs only the eccentricity ratio, sought in
+xi = ln(eps/(1 - eps)), in which the logarithm of the load is nearly a straight line.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .linearized import linearize
+from .problem import FilmState
+
+Array = NDArray[np.float64]
+Position = tuple[float, float]
+
+ECCENTRICITY_LIMITS = (1e-5, 0.9995)
+"""Eccentricity ratios between which an equilibrium is sought."""
+CLEARANCE_KEPT = 5e-4
+"""Thinnest film, relative to the clearance, to which a step may take a journal."""
+
+
+@dataclass
+class PlainSearch:
+    """Eccentricity ratio at which a plain film carries `load` [N]; positions along x."""
+
+    load: float
+    clearance: float
+    multiplicity: float
+    unreachable: bool = False
+
+    def __call__(self, state: FilmState) -> tuple[Position, float]:
+        """Newton's next position, and how far the force is off, relative to the load."""
+        eps = state.position[0] / self.clearance
+        xi = math.log(eps / (1.0 - eps))
+        carried = float(np.hypot(*state.force))
+        if not carried > 0.0:
+            self.unreachable = eps >= ECCENTRICITY_LIMITS[1] * (1.0 - 1e-9)
+            return self._at(xi + 1.0), 1.0
+        stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
+        # dW/de from dF = -K de and W = |F|
+        growth = -float(state.force @ stiffness[:, 0]) / carried
+        slope = max(growth * self.clearance * eps * (1.0 - eps) / carried, 0.3)
+        off = carried / self.load - 1.0
+        step = -math.log(carried / self.load) / slope
+        self.unreachable = eps >= ECCENTRICITY_LIMITS[1] * (1.0 - 1e-9) and off < 0.0
+        return self._at(xi + max(-2.0, min(2.0, step))), abs(off)
+
+    def _at(self, xi: float) -> Position:
+        lowest, highest = ECCENTRICITY_LIMITS
+        return self.clearance * min(max(1.0 / (1.0 + math.exp(-xi)), lowest), highest), 0.0
+
+
+@dataclass
+class LoadSearch:
+    """Position at which any film carries `load`, a force [N] on the journal: damped Newton."""
+
+    load: Array
+    clearance: float
+    multiplicity: float
+    thinnest: Callable[[Position], float]
+    """Smallest film thickness [m] at a position; not positive outside the bore."""
+    unreachable: bool = False
+    _stuck: int = field(default=0)
+
+    def __call__(self, state: FilmState) -> tuple[Position, float]:
+        """Newton's next position, and how far the force is off, relative to the load."""
+        missing = state.force + self.load
+        stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
+        off = float(np.hypot(*missing) / np.hypot(*self.load))
+        step = _newton_step(stiffness, missing, self.clearance)
+        position, now = np.array(state.position), self.thinnest(state.position)
+        # At most a fifth of the clearance, and never more than 0.6 of the film left, in one step.
+        length = float(np.hypot(*step))
+        scale = min(1.0, 0.2 * self.clearance / length) if length > 0.0 else 1.0
+        floor = max(0.4 * now, CLEARANCE_KEPT * self.clearance)
+        while scale > 1e-4 and self.thinnest(_pair(position + scale * step)) < floor:
+            scale *= 0.7
+        pinned = now <= 2.0 * CLEARANCE_KEPT * self.clearance and off > 1e-3
+        self._stuck = self._stuck + 1 if pinned or scale <= 1e-4 else 0
+        self.unreachable = self._stuck >= 4
+        return _pair(position + (scale if scale > 1e-4 else 0.0) * step), off
+
+
+@dataclass
+class AttitudeSearch:
+    """Attitude at a given eccentricity, so that the film's force points along -x."""
+
+    eccentricity: float
+    multiplicity: float
+    unreachable: bool = False
+
+    def __call__(self, state: FilmState) -> tuple[Position, float]:
+        """Newton's next position, and the force across the load line relative to the force."""
+        angle = math.atan2(state.position[1], state.position[0])
+        size = float(np.hypot(*state.force))
+        if not size > 0.0:
+            return self.at(angle - 0.2), 1.0
+        stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
+        along = self.eccentricity * np.array([-math.sin(angle), math.cos(angle)])
+        turn = -stiffness @ along  # dF/d(angle)
+        direction = math.atan2(-state.force[1], -state.force[0])  # of the load that it carries
+        rate = (state.force[0] * turn[1] - state.force[1] * turn[0]) / size**2
+        step = -direction / rate if abs(rate) > 0.1 else -direction
+        return self.at(angle + max(-0.4, min(0.4, step))), abs(direction)
+
+    def at(self, angle: float) -> Position:
+        """Position at an attitude angle [rad]."""
+        return self.eccentricity * math.cos(angle), self.eccentricity * math.sin(angle)
+
+
+def _newton_step(stiffness: Array, missing: Array, clearance: float) -> Array:
+    """Step that makes up for the `missing` force; dF = -K dx."""
+    try:
+        step = np.linalg.solve(stiffness, missing)
+    except np.linalg.LinAlgError:
+        step = missing / max(float(np.abs(stiffness).max()), 1e-300)
+    if not np.all(np.isfinite(step)):
+        step = np.array([0.1 * clearance, 0.0])
+    return step
+
+
+def _pair(position: Array) -> Position:
+    return float(position[0]), float(position[1])

@@ -1,0 +1,19 @@
+"""One place that says how the compiled kernels are compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kernel(function: Function) -> Function:
+    """Compile `function` on first use and keep the machine code on disk.
+
+    Division follows numpy (no exception); multiplications and additions may be fused, nothing else
+    is relaxed, so that NaN and infinities still behave.
+    """
+    return numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)(function)

@@ -1,0 +1,90 @@
+"""Integrals across the film with viscosity varying from layer to layer (Dal Eq. 3, 8, 12).
+
+In each of the k layers the viscosity is constant, so every integral below is exact. With
+I_0(z) = int_0^z dz'/mu and I_1(z) = int_0^z z' dz'/mu over the unit film,
+
+- F_0 = I_0(1), G = F_1/F_0 = I_1(1)/I_0(1);
+- a pressure gradient p' drives h^3 p' a_k through layer k, a_k = int_k (I_1 - G I_0) dz, and their
+  sum is -F_2, F_2 = int z (z - G)/mu dz;
+- the moving journal drags U h b_k through layer k, b_k = int_k I_0 dz/F_0, whose sum is 1 - G.
+
+Dowson's equation is thus the sum over the layers of the very fluxes that carry the heat.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .kernels import kernel
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LayerIntegrals:
+    """Cross-film integrals of every column of cells.
+
+    Attributes
+    ----------
+    f0, f2, g : (n, m) arrays
+        F_0 [1/(Pa s)], F_2 [1/(Pa s)], G = F_1/F_0 [-].
+    pressure_share, shear_share : (n, m, k) arrays
+        a_k [1/(Pa s)] and b_k [-]; empty (k = 0) for an isoviscous film.
+    """
+
+    f0: Array
+    f2: Array
+    g: Array
+    pressure_share: Array
+    shear_share: Array
+
+
+def isoviscous_layers(shape: tuple[int, int], viscosity: float) -> LayerIntegrals:
+    """F_0 = 1/mu, G = 1/2, F_2 = 1/(12 mu): Reynolds' equation."""
+    empty = np.empty((*shape, 0))
+    return LayerIntegrals(
+        f0=np.full(shape, 1.0 / viscosity),
+        f2=np.full(shape, 1.0 / (12.0 * viscosity)),
+        g=np.full(shape, 0.5),
+        pressure_share=empty,
+        shear_share=empty,
+    )
+
+
+def layer_integrals(viscosity: Array) -> LayerIntegrals:
+    """Integrals of the (n, m, k) viscosity field [Pa s], equal layers."""
+    n, m, k = viscosity.shape
+    f0, f2, g = np.empty((n, m)), np.empty((n, m)), np.empty((n, m))
+    pressure_share, shear_share = np.empty((n, m, k)), np.empty((n, m, k))
+    _integrate(viscosity, f0, f2, g, pressure_share, shear_share)
+    return LayerIntegrals(f0, f2, g, pressure_share, shear_share)
+
+
+@kernel
+def _integrate(viscosity, f0, f2, g, pressure_share, shear_share):
+    n, m, layers = viscosity.shape
+    dz = 1.0 / layers
+    for i in range(n):
+        for j in range(m):
+            i0 = 0.0
+            i1 = 0.0
+            for k in range(layers):
+                fluidity = 1.0 / viscosity[i, j, k]
+                z = k * dz
+                # int over the layer of I_0, and of I_1, each exact
+                shear_share[i, j, k] = dz * (i0 + 0.5 * dz * fluidity)
+                pressure_share[i, j, k] = dz * (i1 + fluidity * dz * (0.5 * z + dz / 6.0))
+                i0 += dz * fluidity
+                i1 += dz * fluidity * (z + 0.5 * dz)
+            ratio = i1 / i0
+            total = 0.0
+            for k in range(layers):
+                pressure_share[i, j, k] -= ratio * shear_share[i, j, k]
+                total += pressure_share[i, j, k]
+                shear_share[i, j, k] /= i0
+            f0[i, j] = i0
+            g[i, j] = ratio
+            f2[i, j] = -total

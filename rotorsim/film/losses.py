@@ -1,0 +1,70 @@
+"""Friction, power loss and flow of a solved film (Dal Eq. 17-18, corrected)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import RupturedFriction
+from .flow import film_flow
+from .problem import FilmProblem, FilmState
+
+Array = NDArray[np.float64]
+
+
+def liquid_fraction(problem: FilmProblem, state: FilmState) -> Array:
+    """What the oil fills of each cell, (n, m)."""
+    return film_flow(
+        state.operator, state.thickness, state.layers, state.solution.pressure,
+        state.solution.full, problem.surface_speed,
+    ).liquid_fraction  # fmt: skip
+
+
+def friction_force(problem: FilmProblem, state: FilmState, fraction: Array) -> float:
+    """Friction on the shaft [N]: tau = h p' (1 - G) + U/(h F_0) on the journal's surface.
+
+    With ``liquid`` friction and an isothermal or thermal film, force times U is the power that the
+    film dissipates, to rounding.
+    """
+    operator = state.operator
+    if problem.settings.ruptured_friction is RupturedFriction.WHOLE:
+        fraction = np.ones_like(fraction)
+    pressure = state.solution.pressure
+    behind = np.stack([np.roll(pressure, 1, axis=0), np.roll(pressure, -1, axis=0)])
+    behind = np.where(operator.linked[:2], behind, operator.outer_pressure[:2])
+    rise = np.stack([pressure - behind[0], behind[1] - pressure])
+    share = np.where(operator.linked[:2], 0.5, 1.0)
+    film = ~operator.held
+    # drag = U h (1 - G) width and rise over the gap: int h p' (1 - G) dA = drag rise/U
+    driven = np.sum(share * operator.drag * rise * film) / problem.surface_speed
+    dragged = np.sum(
+        film
+        * fraction
+        * problem.surface_speed
+        * operator.area
+        / (state.thickness.center * state.layers.f0)
+    )
+    return float(problem.mesh.multiplicity * (driven + dragged))
+
+
+def side_flow(problem: FilmProblem, state: FilmState) -> float:
+    """Oil out of both ends [m3/s]."""
+    conductance = state.operator.conductance
+    pressure = state.solution.pressure
+    film = ~state.operator.held
+    out = np.sum((conductance[3] * pressure * film)[:, -1])
+    if not problem.mesh.half:
+        out += np.sum((conductance[2] * pressure * film)[:, 0])
+    return float(problem.mesh.multiplicity * out)
+
+
+def peak(field: Array) -> float:
+    """Largest value of a cell field, refined by parabolas through its neighbours."""
+    i, j = np.unravel_index(int(np.argmax(field)), field.shape)
+    value = float(field[i, j])
+    if value <= 0.0:
+        return value
+    line = field[[i - 1, i, (i + 1) % field.shape[0]], j]
+    bend = line[0] - 2.0 * line[1] + line[2]
+    slope = 0.5 * (line[2] - line[0])
+    return value if bend >= 0.0 else value - 0.5 * slope**2 / bend

@@ -1,0 +1,254 @@
+"""The film's cells: around the bearing, along its axis, across the gap.
+
+Cells run around in the direction of rotation, i = 0..n-1, and along the axis, j = 0..m-1; a
+symmetric bearing is solved on one half, mid-plane to end. Pressure and temperature live at cell
+centres, fluxes on faces, so that oil and enthalpy are conserved cell by cell.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..model import Bearing, FilmSettings, Inception
+from .geometry import bore_offset
+
+Array = NDArray[np.float64]
+
+# Part of the cells that follows 1/h; the rest is spread evenly. 1/h is the density of Sommerfeld's
+# variable, in which a thin film's pressure is as smooth as a thick one's.
+GRADED_SHARE = 0.5
+
+
+@dataclass(frozen=True)
+class FilmMesh:
+    """Cells of the film, in the film frame (see `FilmFrame` in `film.state`).
+
+    Attributes
+    ----------
+    theta_faces : (n + 1,) array
+        [rad]; one full turn.
+    y_faces : (m + 1,) array
+        [m]; from 0 (half) or -L/2 (full) to L/2.
+    half : bool
+        Only the half y >= 0 is solved; the other is its mirror image.
+    supply : (n, m) int array
+        -1 in the film, else the number of the groove that the cell belongs to.
+    slot : (n,) bool array
+        True where p = 0 and fresh film begin at the cell's first face (``max_film``).
+    region : (n,) int array
+        Number of the stretch of film a column belongs to; stretches end at slots and at
+        full-length grooves.
+    radius : float
+        Journal radius [m].
+    """
+
+    theta_faces: Array
+    y_faces: Array
+    half: bool
+    supply: NDArray[np.int64]
+    slot: NDArray[np.bool_]
+    region: NDArray[np.int64]
+    radius: float
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(n, m)."""
+        return self.theta_faces.size - 1, self.y_faces.size - 1
+
+    @property
+    def theta(self) -> Array:
+        """Cell centres [rad]."""
+        return 0.5 * (self.theta_faces[1:] + self.theta_faces[:-1])
+
+    @property
+    def y(self) -> Array:
+        """Cell centres [m]."""
+        return 0.5 * (self.y_faces[1:] + self.y_faces[:-1])
+
+    @property
+    def dx(self) -> Array:
+        """Cell lengths around the journal [m]."""
+        return self.radius * np.diff(self.theta_faces)
+
+    @property
+    def dy(self) -> Array:
+        """Cell lengths along the axis [m]."""
+        return np.diff(self.y_faces)
+
+    @property
+    def multiplicity(self) -> float:
+        """How many like parts the mesh stands for: 2 for a half film."""
+        return 2.0 if self.half else 1.0
+
+
+def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, float]) -> FilmMesh:
+    """Mesh of `bearing` (in the film frame), graded for the journal at `position` [m]."""
+    size = settings.mesh
+    slots_at_max = bearing.is_plain and settings.inception is Inception.MAX_FILM
+    start, breaks = _breakpoints(bearing)
+    theta_faces = _theta_faces(bearing, position, start, breaks, size.circumferential)
+    half = bearing.is_symmetric
+    y_faces = (
+        np.linspace(0.0, bearing.length / 2.0, size.axial // 2 + 1)
+        if half
+        else np.linspace(-bearing.length / 2.0, bearing.length / 2.0, size.axial + 1)
+    )
+    supply, y_faces = _supply_cells(bearing, theta_faces, y_faces)
+    slot = np.zeros(size.circumferential, dtype=bool)
+    slot[0] = slots_at_max
+    return FilmMesh(
+        theta_faces=theta_faces,
+        y_faces=y_faces,
+        half=half,
+        supply=supply,
+        slot=slot,
+        region=_regions(supply, slot),
+        radius=bearing.journal_radius,
+    )
+
+
+def _breakpoints(bearing: Bearing) -> tuple[float, list[float]]:
+    """First angle of the mesh and all angles in one turn from it where a face must lie."""
+    edges: list[float] = []
+    for groove in bearing.grooves:
+        edges += [groove.center - groove.extent / 2.0, groove.center + groove.extent / 2.0]
+    for arc in bearing.arcs:
+        if arc.preload > 0.0:
+            edges += [arc.start, arc.end]
+    if not edges:
+        return -math.pi, [-math.pi, math.pi]
+    # Begin behind the groove that lies nearest to pi from the load: there a film starts.
+    start = edges[1] if bearing.grooves else edges[0]
+    turn = 2.0 * math.pi
+    inside = sorted({round((edge - start) % turn, 12) for edge in edges})
+    inside = [a for a in inside if 1e-9 < a < turn - 1e-9]
+    # Edges that two features share differ by rounding only: merge them.
+    merged = [0.0]
+    merged += [a for k, a in enumerate(inside) if k == 0 or a - inside[k - 1] > 1e-6]
+    return start, [start + a for a in merged] + [start + turn]
+
+
+def _theta_faces(
+    bearing: Bearing,
+    position: tuple[float, float],
+    start: float,
+    breaks: list[float],
+    count: int,
+) -> Array:
+    """Faces so that every break is one, cells shared out by the density of the mesh."""
+    stretches = len(breaks) - 1
+    if count < 2 * stretches:
+        raise InputError(
+            f"too coarse for this bearing's {stretches} arcs and grooves: at least {2 * stretches}",
+            key="film.mesh.circumferential",
+            value=count,
+        )
+    fine = np.linspace(start, start + 2.0 * math.pi, 4001)
+    h = _mid_thickness(bearing, fine, position)
+    density = (1.0 - GRADED_SHARE) / (2.0 * math.pi)
+    density = density + GRADED_SHARE / h / np.trapezoid(1.0 / h, fine)
+    steps = 0.5 * (density[1:] + density[:-1]) * np.diff(fine)
+    cumulative = np.concatenate([[0.0], np.cumsum(steps)])
+    cumulative /= cumulative[-1]
+    at_breaks = np.interp(breaks, fine, cumulative)
+    shares = np.diff(at_breaks)
+    counts = _share_out(_film_weight(bearing, breaks, shares), count)
+    faces = [np.array([breaks[0]])]
+    for k, cells in enumerate(counts):
+        inner = at_breaks[k] + shares[k] * np.arange(1, cells + 1) / cells
+        theta = np.interp(inner, cumulative, fine)
+        theta[-1] = breaks[k + 1]
+        faces.append(theta)
+    return np.concatenate(faces)
+
+
+def _mid_thickness(bearing: Bearing, theta: Array, position: tuple[float, float]) -> Array:
+    """Film thickness at mid-plane, held above 1e-4 of the clearance for the mesh's density."""
+    h = (
+        bearing.radial_clearance
+        - position[0] * np.cos(theta)
+        - position[1] * np.sin(theta)
+        + bore_offset(bearing, theta)
+    )
+    return np.maximum(h, 1e-4 * bearing.radial_clearance)
+
+
+def _film_weight(bearing: Bearing, breaks: list[float], shares: Array) -> Array:
+    """Shares in which full-length grooves, where nothing is solved, weigh little."""
+    weights = shares.copy()
+    for k in range(len(breaks) - 1):
+        middle = 0.5 * (breaks[k] + breaks[k + 1])
+        groove = _groove_at(bearing, middle)
+        if groove is not None and _spans_length(bearing, groove):
+            weights[k] *= 0.1
+    return weights
+
+
+def _share_out(weights: Array, count: int) -> list[int]:
+    """Whole numbers of at least 2, in proportion to `weights`, that add up to `count`."""
+    spare = count - 2 * weights.size
+    exact = np.maximum(weights / weights.sum() * count - 2.0, 0.0)
+    exact *= spare / exact.sum() if exact.sum() > 0.0 else 0.0
+    counts = np.floor(exact).astype(int)
+    for k in np.argsort(counts - exact)[: spare - int(counts.sum())]:
+        counts[k] += 1
+    return [int(c) + 2 for c in counts]
+
+
+def _groove_at(bearing: Bearing, theta: float) -> int | None:
+    for number, groove in enumerate(bearing.grooves):
+        distance = (theta - groove.center + math.pi) % (2.0 * math.pi) - math.pi
+        if abs(distance) < groove.extent / 2.0:
+            return number
+    return None
+
+
+def _spans_length(bearing: Bearing, number: int) -> bool:
+    length = bearing.grooves[number].length
+    return length is None or length >= bearing.length * (1.0 - 1e-9)
+
+
+def _supply_cells(
+    bearing: Bearing, theta_faces: Array, y_faces: Array
+) -> tuple[NDArray[np.int64], Array]:
+    """Which cells are groove; axial faces are moved onto the ends of partial grooves."""
+    y_faces = y_faces.copy()
+    for groove in bearing.grooves:
+        if groove.length is None or groove.length >= bearing.length * (1.0 - 1e-9):
+            continue
+        for end in (groove.length / 2.0, -groove.length / 2.0):
+            if y_faces[0] < end < y_faces[-1]:
+                nearest = 1 + int(np.argmin(np.abs(y_faces[1:-1] - end)))
+                y_faces[nearest] = end
+    middles = 0.5 * (theta_faces[1:] + theta_faces[:-1])
+    y = 0.5 * (y_faces[1:] + y_faces[:-1])
+    supply = np.full((middles.size, y.size), -1, dtype=np.int64)
+    for i, theta in enumerate(middles):
+        number = _groove_at(bearing, float(theta))
+        if number is None:
+            continue
+        length = bearing.grooves[number].length or bearing.length
+        supply[i, np.abs(y) < length / 2.0] = number
+    return supply, y_faces
+
+
+def _regions(supply: NDArray[np.int64], slot: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Stretches of film between slots and full-length grooves; -1 in such grooves."""
+    blocked = (supply >= 0).all(axis=1)
+    region = np.full(blocked.size, -1, dtype=np.int64)
+    current = -1
+    for i in range(blocked.size):
+        if blocked[i]:
+            continue
+        if i == 0 or blocked[i - 1] or slot[i]:
+            current += 1
+        region[i] = current
+    joined = not blocked[0] and not blocked[-1] and not slot[0]
+    if joined and current > 0:
+        region[region == current] = region[0]
+    return region

@@ -1,0 +1,303 @@
+"""A film at its equilibrium: the search for the position around the isothermal or thermal film."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import Bearing, Case, EccentricityTarget, LoadTarget, ThermalModel
+from ..status import SolveStatus
+from .banded import SingularFilmError
+from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
+from .geometry import film_thickness
+from .layers import isoviscous_layers
+from .problem import FilmProblem, FilmState, film_problem, film_state
+from .thd import TEMPERATURE_LIMITS, Heat, ThermalFilm, solve_thermal_film, uniform_heat
+
+Array = NDArray[np.float64]
+Position = tuple[float, float]
+Search = PlainSearch | LoadSearch | AttitudeSearch
+
+FORCE_TOLERANCE = 1e-8
+"""Relative force residual at which the position counts as found."""
+MAX_POSITION_STEPS = 60
+MAX_MESHES = 5
+"""Times that the mesh may be graded anew for the position found."""
+
+
+@dataclass(frozen=True)
+class WarmStart:
+    """What the next speed may begin from; picklable, and only ever a first guess.
+
+    Attributes
+    ----------
+    position : tuple of float
+        Journal centre [m], load frame.
+    heat : Heat or None
+    full : (n, m) bool array
+        Cells of full film.
+    """
+
+    position: Position
+    heat: Heat | None
+    full: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class FilmSolution:
+    """A film at its equilibrium, or the last iterate with the reason.
+
+    Attributes
+    ----------
+    problem : FilmProblem
+    state : FilmState
+    thermal : ThermalFilm or None
+        None for an isothermal film.
+    frame : float
+        Angle from the load line to the film frame's x axis [rad].
+    status : SolveStatus
+    message : str
+    iterations : int
+    residual : float
+    """
+
+    problem: FilmProblem
+    state: FilmState
+    thermal: ThermalFilm | None
+    frame: float
+    status: SolveStatus
+    message: str
+    iterations: int
+    residual: float
+
+    @property
+    def warm_start(self) -> WarmStart:
+        """First guess for a neighbouring speed."""
+        return WarmStart(
+            position=_turned(self.state.position, self.frame),
+            heat=self.thermal.heat if self.thermal is not None else None,
+            full=self.state.solution.full,
+        )
+
+
+@dataclass(frozen=True)
+class _Iterate:
+    """What both kinds of film give back to the search."""
+
+    state: FilmState
+    thermal: ThermalFilm | None
+    converged: bool
+    iterations: int
+    residual: float
+
+
+def solve_film(case: Case, speed: float, *, initial: WarmStart | None = None) -> FilmSolution:
+    """The film of `case` at `speed` [rad/s], at the eccentricity or under the load it asks for."""
+    if case.bearing.is_plain and case.bearing.is_symmetric:
+        return _solve_plain(case, speed, initial)
+    return _solve_general(case, speed, initial)
+
+
+def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
+    """A plain film is solved in the frame of the line of centres and turned afterwards."""
+    clearance, target = case.bearing.radial_clearance, case.target
+    if isinstance(target, EccentricityTarget):
+        position = (target.eccentricity_ratio * clearance, 0.0)
+        problem = film_problem(case, speed, case.bearing, position)
+        film = _iterate(problem, position, None, initial)
+        return _conclude(problem, film, _load_line(film.state), None, film.iterations)
+    eps = math.hypot(*initial.position) / clearance if initial else 0.5
+    heat = initial
+    search = PlainSearch(target.load, clearance, 2.0)
+    total = 0
+    for _ in range(MAX_MESHES):
+        level = graded_eccentricity(eps)
+        problem = film_problem(case, speed, case.bearing, (level * clearance, 0.0))
+        if problem.is_thermal and heat is None:
+            cold = _iterate_isothermal(problem, (eps * clearance, 0.0), search, None)
+            eps = min(cold.state.position[0] / clearance, 0.9)
+        search.unreachable = False
+        film = _iterate(problem, (eps * clearance, 0.0), search, heat)
+        total += film.iterations
+        eps = film.state.position[0] / clearance
+        heat = WarmStart(
+            film.state.position, film.thermal.heat if film.thermal else None,
+            film.state.solution.full,
+        )  # fmt: skip
+        if search.unreachable or graded_eccentricity(eps) == level:
+            break
+    return _conclude(problem, film, _load_line(film.state), search, total)
+
+
+def graded_eccentricity(eps: float) -> float:
+    """Eccentricity ratio for which the mesh is graded: one of a few, so that it does not drift."""
+    step = 0.25
+    return 1.0 - math.exp(-step * round(-math.log(1.0 - eps) / step))
+
+
+def _load_line(state: FilmState) -> float:
+    """Angle from the load line to the film frame's x axis, the load being what the film carries."""
+    return -math.atan2(-state.force[1], -state.force[0])
+
+
+def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
+    """Any other film is solved in the load frame (a tilted plain one in a frame near its centre's)."""
+    clearance = case.bearing.radial_clearance
+    position = initial.position if initial else _first_position(case)
+    heat, total = initial, 0
+    for _ in range(MAX_MESHES):
+        frame = _frame_angle(case.bearing, position)
+        bearing = case.bearing.turned(-frame)
+        local = _turned(position, -frame)
+        level = _graded_position(bearing, local)
+        problem = film_problem(case, speed, bearing, level)
+        search = _search(case, problem, frame)
+        if problem.is_thermal and heat is None:
+            cold = _iterate_isothermal(problem, local, search, None)
+            if cold.converged:
+                local = tuple(0.9 * e for e in cold.state.position)  # hot oil: further out, gently
+            search = _search(case, problem, frame)
+        film = _iterate(problem, local, search, heat)
+        total += film.iterations
+        position = _turned(film.state.position, frame)
+        heat = WarmStart(
+            position, film.thermal.heat if film.thermal else None, film.state.solution.full
+        )
+        settled = _graded_position(bearing, film.state.position) == level
+        turned = abs(_frame_angle(case.bearing, position) - frame)
+        if search.unreachable or not film.converged or (settled and turned < 1e-3):
+            break
+    return _conclude(problem, film, frame, search, total)
+
+
+def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | AttitudeSearch:
+    clearance, times = case.bearing.radial_clearance, problem.mesh.multiplicity
+    if isinstance(case.target, EccentricityTarget):
+        return AttitudeSearch(case.target.eccentricity_ratio * clearance, times)
+    load = case.target.load * np.array([math.cos(frame), -math.sin(frame)])
+    return LoadSearch(load, clearance, times, _thinnest(problem))
+
+
+def _thinnest(problem: FilmProblem) -> Callable[[Position], float]:
+    mesh, bearing = problem.mesh, problem.bearing
+    ends = mesh.y_faces[[0, -2, -1]]
+    return lambda position: film_thickness(bearing, mesh.theta_faces, ends, position).minimum
+
+
+def _first_position(case: Case) -> Position:
+    eps = 0.4
+    if isinstance(case.target, EccentricityTarget):
+        eps = case.target.eccentricity_ratio
+    preload = max((arc.preload for arc in case.bearing.arcs), default=0.0)
+    if isinstance(case.target, LoadTarget):
+        eps *= 1.0 - preload
+    size = eps * case.bearing.radial_clearance
+    return size * math.cos(0.8), size * math.sin(0.8)
+
+
+def _frame_angle(bearing: Bearing, position: Position) -> float:
+    """0, or the line of centres' angle for a tilted plain bearing: its film begins opposite."""
+    return math.atan2(position[1], position[0]) if bearing.is_plain else 0.0
+
+
+def _graded_position(bearing: Bearing, position: Position) -> Position:
+    """Position for which the mesh is graded, on a grid as fine as the film is thin."""
+    theta = np.linspace(0.0, 2.0 * math.pi, 181)
+    thin = film_thickness(bearing, theta, np.array([-1e-9, 1e-9]), position).minimum
+    relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
+    grid = 2.0 ** math.floor(math.log2(relative / 2.0)) * bearing.radial_clearance
+    return round(position[0] / grid) * grid, round(position[1] / grid) * grid
+
+
+def _turned(position: Position, angle: float) -> Position:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return position[0] * cos - position[1] * sin, position[0] * sin + position[1] * cos
+
+
+def _iterate(
+    problem: FilmProblem, position: Position, search: Search | None, initial: WarmStart | None
+) -> _Iterate:
+    if not problem.is_thermal:
+        return _iterate_isothermal(problem, position, search, initial)
+    shape = (*problem.mesh.shape, problem.settings.mesh.cross_film)
+    heat = initial.heat if initial else None
+    if heat is None or heat.temperature.shape != shape:
+        heat = uniform_heat(problem)
+    film = solve_thermal_film(
+        problem, position, initial=heat, move=search, force_tolerance=FORCE_TOLERANCE
+    )
+    return _Iterate(film.state, film, film.converged, film.iterations, film.residual)
+
+
+def _iterate_isothermal(
+    problem: FilmProblem, position: Position, search: Search | None, initial: WarmStart | None
+) -> _Iterate:
+    """The film at the supply temperature's viscosity."""
+    viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
+    layers = isoviscous_layers(problem.mesh.shape, viscosity)
+    full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
+    off = 0.0
+    for step in range(1, MAX_POSITION_STEPS + 1):
+        state = film_state(problem, position, layers, start=full)
+        full = state.solution.full
+        if search is None:
+            return _Iterate(state, None, state.solution.converged, state.solution.steps, 0.0)
+        position, off = search(state)
+        if off < FORCE_TOLERANCE or search.unreachable:
+            break
+    done = off < FORCE_TOLERANCE and state.solution.converged
+    return _Iterate(state, None, done, step, off)
+
+
+def _conclude(
+    problem: FilmProblem, film: _Iterate, frame: float, search: Search | None, iterations: int
+) -> FilmSolution:
+    """Say how it ended."""
+    status, message = SolveStatus.CONVERGED, ""
+    if search is not None and search.unreachable:
+        status = SolveStatus.NO_EQUILIBRIUM
+        message = (
+            "no journal position within the clearance carries the load "
+            f"(eccentricity ratios up to {ECCENTRICITY_LIMITS[1]}); reduce the load, or raise "
+            "speed, viscosity or size"
+        )
+    elif not film.state.solution.pressure.max() > 0.0 or not film.state.solution.full.any():
+        status, message = SolveStatus.STARVED, "no film forms: the pressure is nowhere above zero"
+    elif not film.converged:
+        status = SolveStatus.NOT_CONVERGED
+        message = (
+            f"stopped after {iterations} iterations with a residual of {film.residual:.1e}; the "
+            "numbers are the last iterate. Try a neighbouring speed first, inception = "
+            '"max_film", or a lower load'
+        )
+    elif film.thermal is not None and _out_of_range(film.thermal.heat.temperature):
+        status = SolveStatus.OUT_OF_RANGE
+        message = "the film's temperature left the range in which an oil's law means anything"
+    return FilmSolution(
+        problem=problem,
+        state=film.state,
+        thermal=film.thermal,
+        frame=frame,
+        status=status,
+        message=message,
+        iterations=iterations,
+        residual=film.residual,
+    )
+
+
+def _out_of_range(temperature: Array) -> bool:
+    low, high = TEMPERATURE_LIMITS
+    return bool(temperature.min() <= low + 1.0 or temperature.max() >= high - 1.0)
+
+
+__all__ = [
+    "FilmSolution",
+    "SingularFilmError",
+    "ThermalModel",
+    "WarmStart",
+    "solve_film",
+]

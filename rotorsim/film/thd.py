@@ -1,0 +1,216 @@
+"""The thermohydrodynamic fixed point: viscosity, pressure, flow and heat until they agree.
+
+One iteration takes a temperature field (and both walls) through viscosity, Dowson's equation and
+the energy equation to a new temperature field; Anderson acceleration mixes them. A `move` callback
+may shift the journal between iterations, so that position and temperature converge together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import BushModel, ShaftModel
+from .anderson import AndersonMixer
+from .bush import BushConduction
+from .energy import EnergyProblem, march
+from .heat import (
+    energy_problem,
+    heat_to_bush,
+    heat_to_shaft,
+    inlet_temperatures,
+    start_wall_temperatures,
+    wall_temperatures,
+)
+from .layers import layer_integrals
+from .problem import FilmProblem, FilmState, film_state
+
+Array = NDArray[np.float64]
+Position = tuple[float, float]
+
+TOLERANCE = 1e-6
+"""Largest change of log viscosity in one iteration at which the film counts as converged."""
+MAX_ITERATIONS = 150
+TEMPERATURE_LIMITS = (150.0, 900.0)
+"""[K]; an iterate outside is pulled back, a converged field outside is out of range."""
+
+
+@dataclass(frozen=True)
+class Heat:
+    """Temperatures of the film and its walls.
+
+    Attributes
+    ----------
+    temperature : (n, m, k) array
+        [K]
+    bush : (n, m) array
+        Of the bore [K].
+    shaft : float
+        [K]
+    """
+
+    temperature: Array
+    bush: Array
+    shaft: float
+
+    def packed(self) -> Array:
+        """All unknowns in one flat array."""
+        return np.concatenate([self.temperature.ravel(), self.bush.ravel(), [self.shaft]])
+
+    def like(self, packed: Array) -> Heat:
+        """The reverse of `packed`."""
+        films, bore = self.temperature.size, self.bush.size
+        return Heat(
+            temperature=packed[:films].reshape(self.temperature.shape).copy(),
+            bush=packed[films : films + bore].reshape(self.bush.shape).copy(),
+            shaft=float(packed[-1]),
+        )
+
+
+@dataclass(frozen=True)
+class ThermalFilm:
+    """A converged (or last) iterate.
+
+    Attributes
+    ----------
+    state : FilmState
+        Pressure and flow at the temperatures below.
+    heat : Heat
+    viscosity : (n, m, k) array
+        [Pa s]
+    energy : EnergyProblem
+    inlet_temperature : (4, n, m, k) array
+        [K]
+    converged : bool
+    iterations : int
+    residual : float
+        Last change of log viscosity.
+    history : tuple of float
+        The residual of every iteration.
+    """
+
+    state: FilmState
+    heat: Heat
+    viscosity: Array
+    energy: EnergyProblem
+    inlet_temperature: Array
+    converged: bool
+    iterations: int
+    residual: float
+    history: tuple[float, ...]
+
+
+Move = Callable[[FilmState], tuple[Position, float]]
+"""From the film's state to the next position and the relative force residual."""
+
+
+def uniform_heat(problem: FilmProblem) -> Heat:
+    """The film at supply temperature throughout."""
+    n, m = problem.mesh.shape
+    bush, shaft = start_wall_temperatures(problem.thermal, (n, m))
+    layers = problem.settings.mesh.cross_film
+    return Heat(np.full((n, m, layers), problem.thermal.supply_temperature), bush, shaft)
+
+
+def solve_thermal_film(
+    problem: FilmProblem,
+    position: Position,
+    *,
+    initial: Heat | None = None,
+    move: Move | None = None,
+    force_tolerance: float = 1e-7,
+    tolerance: float = TOLERANCE,
+    max_iterations: int = MAX_ITERATIONS,
+) -> ThermalFilm:
+    """Iterate to the fixed point.
+
+    Parameters
+    ----------
+    position : tuple of float
+        Journal centre [m], film frame; the first guess if `move` is given.
+    initial : Heat, optional
+        A neighbouring solution.
+    move : callable, optional
+        Gives the next position; called once an iteration.
+
+    Returns
+    -------
+    ThermalFilm
+        With ``converged`` False if `max_iterations` did not suffice.
+    """
+    heat = uniform_heat(problem) if initial is None else initial
+    mixer = AndersonMixer(depth=6)
+    law, bush = problem.lubricant.law, _bush_of(problem)
+    full, history = None, []
+    while True:
+        viscosity = law.viscosity(heat.temperature)
+        state = film_state(problem, position, layer_integrals(viscosity), start=full)
+        full = state.solution.full
+        energy = energy_problem(problem, state)
+        inlet = inlet_temperatures(problem, energy, heat.temperature)
+        mapped = _through_energy(problem, energy, viscosity, heat, inlet, bush)
+        residual = _change(law.viscosity, viscosity, mapped, heat)
+        history.append(residual)
+        off = 0.0
+        if move is not None:
+            position, off = move(state)
+        done = residual < tolerance and off < force_tolerance
+        if done or len(history) >= max_iterations or not np.isfinite(residual):
+            return ThermalFilm(
+                state=state, heat=heat, viscosity=viscosity, energy=energy,
+                inlet_temperature=inlet, converged=done, iterations=len(history),
+                residual=residual, history=tuple(history),
+            )  # fmt: skip
+        mixed = mixer.next(heat.packed(), mapped.packed())
+        heat = heat.like(np.clip(mixed, *TEMPERATURE_LIMITS))
+
+
+def _change(
+    viscosity_at: Callable[[Array], Array], viscosity: Array, mapped: Heat, heat: Heat
+) -> float:
+    """Largest change of log viscosity anywhere, walls included."""
+    change = np.abs(np.log(viscosity_at(mapped.temperature) / viscosity)).max()
+    slope = change / max(np.abs(mapped.temperature - heat.temperature).max(), 1e-300)
+    walls = max(np.abs(mapped.bush - heat.bush).max(), abs(mapped.shaft - heat.shaft))
+    return float(max(change, slope * walls if slope < 1.0 else 0.0))
+
+
+def _bush_of(problem: FilmProblem) -> BushConduction | None:
+    if problem.thermal.bush is not BushModel.CONDUCTION:
+        return None
+    return BushConduction.of(problem)
+
+
+def _through_energy(
+    problem: FilmProblem,
+    energy: EnergyProblem,
+    viscosity: Array,
+    heat: Heat,
+    inlet: Array,
+    bush: BushConduction | None,
+) -> Heat:
+    """New temperatures of film, bore and shaft from the energy equation and the walls."""
+    walls = wall_temperatures(problem.thermal, heat.bush, heat.shaft)
+    temperature = heat.temperature.copy()
+    passes = 2 if (energy.flow.drive[0][energy.flow.inlet] > 0.0).any() else 1
+    march(energy, viscosity, walls, inlet, temperature, passes=passes)
+    shaft, bore = heat.shaft, heat.bush
+    if problem.thermal.shaft is ShaftModel.INSULATED:
+        shaft += heat_to_shaft(energy, temperature, shaft) / _film_conductance(energy)
+    if problem.thermal.bush is BushModel.INSULATED:
+        bore = temperature[:, :, 0].copy()
+    elif bush is not None:
+        bore = bush.respond(heat_to_bush(energy, temperature, walls), bore, energy)
+    return Heat(temperature, bore, shaft)
+
+
+def _film_conductance(energy: EnergyProblem) -> float:
+    """Conductance between the film's bulk and a wall, over the meshed part [W/K].
+
+    About twice k area/h, a developed film's; only the speed of convergence depends on it.
+    """
+    layers = energy.layers.pressure_share.shape[2]
+    return float(2.0 * energy.conductance.sum() / layers)

@@ -1,0 +1,292 @@
+"""From a case and a speed to an operating point: film, coefficients, verdict, warnings."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .checks import regime_warnings
+from .errors import InputError
+from .film.banded import SingularFilmError
+from .film.heat import heat_totals, wall_temperatures
+from .film.linearized import linearize
+from .film.losses import friction_force, liquid_fraction, peak, side_flow
+from .film.solution import FilmSolution, WarmStart, solve_film
+from .model import Case, LoadTarget, ThermalModel
+from .operating_point import FilmFields, HeatBalance, OperatingPoint
+from .stability.whirl import rigid_threshold
+from .status import SolveStatus
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
+
+Array = NDArray[np.float64]
+Choice = TypeVar("Choice")
+
+
+def solve(
+    scenario: Scenario,
+    *,
+    speed: float | None = None,
+    radial_clearance: float | None = None,
+    thermal_model: str | None = None,
+) -> OperatingPoint:
+    """One operating point of a scenario, its fields included.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    speed : float, optional
+        [rad/s]; any positive value. May be omitted if the scenario has one speed only.
+    radial_clearance : float, optional
+        [m]; likewise.
+    thermal_model : str, optional
+        ``isothermal`` or ``thd``; likewise.
+
+    Raises
+    ------
+    InputError
+        Something is left open, or not positive.
+    """
+    models = tuple(str(m) for m in scenario.thermal_models)
+    case = scenario.case(
+        _only("radial_clearance", radial_clearance, scenario.radial_clearances),
+        ThermalModel(_only("thermal_model", thermal_model, models)),
+    )
+    omega = _only("speed", speed, tuple(float(s) for s in scenario.speeds))
+    return solve_case(case, omega, keep_fields=True)[0]
+
+
+def _only(name: str, value: Choice | None, choices: tuple[Choice, ...]) -> Choice:
+    if value is not None:
+        return value
+    if len(choices) != 1:
+        raise InputError(
+            f"must be given: the scenario leaves the choice between {len(choices)} values",
+            key=name,
+        )
+    return choices[0]
+
+
+def solve_case(
+    case: Case,
+    speed: float,
+    *,
+    initial: WarmStart | None = None,
+    keep_fields: bool = False,
+) -> tuple[OperatingPoint, WarmStart | None]:
+    """Solve `case` at `speed` [rad/s].
+
+    Parameters
+    ----------
+    initial : WarmStart, optional
+        What a neighbouring point returned; a first guess that saves time.
+    keep_fields : bool
+        Keep pressure, temperature and viscosity fields in the result.
+
+    Returns
+    -------
+    OperatingPoint
+        Its `status` says whether the numbers may be used.
+    WarmStart or None
+        For the next speed; None if this point did not converge.
+
+    Raises
+    ------
+    InputError
+        The speed is not positive, or the mesh cannot hold the geometry.
+    """
+    if not (math.isfinite(speed) and speed > 0.0):
+        raise InputError("must be above 0 (rad/s)", key="speed", value=speed)
+    try:
+        solution = solve_film(case, speed, initial=initial)
+        if solution.status is not SolveStatus.CONVERGED and initial is not None:
+            solution = solve_film(case, speed)  # the first guess may have been a bad one
+    except SingularFilmError as error:
+        return _failed(case, speed, f"the film's equations cannot be solved: {error}"), None
+    point = operating_point(case, speed, solution, keep_fields=keep_fields)
+    usable = solution.status is SolveStatus.CONVERGED
+    return point, solution.warm_start if usable else None
+
+
+def operating_point(
+    case: Case, speed: float, solution: FilmSolution, *, keep_fields: bool = False
+) -> OperatingPoint:
+    """Results of a solved film, turned into the load frame."""
+    problem, state = solution.problem, solution.state
+    stiffness, damping = linearize(state.operator, state.solution, problem.mesh.multiplicity)
+    turn = _rotation(solution.frame)
+    stiffness, damping = turn @ stiffness @ turn.T, turn @ damping @ turn.T
+    center = turn @ np.array(state.position)
+    load = float(np.hypot(*state.force))
+    clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
+    viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
+    fraction = liquid_fraction(problem, state)
+    friction = friction_force(problem, state, fraction)
+    hottest, mean = _temperatures(solution, fraction)
+    thinnest = min_film_thickness(solution)
+    numbers: dict[str, float] = {
+        "eccentricity_ratio": float(np.hypot(*center)) / clearance,
+        "attitude_angle": math.atan2(center[1], center[0]),
+        "load": load,
+        "sommerfeld_number": _ratio(
+            viscosity * speed / (2.0 * math.pi) * 2.0 * radius * case.bearing.length
+            * (radius / clearance) ** 2, load,
+        ),
+        "max_pressure": peak(state.solution.pressure),
+        "max_temperature": hottest,
+        "mean_temperature": mean,
+        "friction_force": friction,
+        "power_loss": friction * speed * radius,
+        "side_flow": side_flow(problem, state),
+        "min_film_thickness": thinnest,
+    }  # fmt: skip
+    status, message = solution.status, solution.message
+    finite = all(math.isfinite(v) for v in numbers.values()) and np.isfinite(stiffness).all()
+    threshold = None
+    if finite and status in (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED):
+        threshold = rigid_threshold(
+            stiffness, damping, speed, load=load, radial_clearance=clearance
+        )
+    elif not finite:
+        status, message = SolveStatus.FAILED, message or "the solution is not finite"
+    mean_viscosity = float(case.lubricant.viscosity(mean))
+    return OperatingPoint(
+        status=status,
+        message=message,
+        thermal_model=str(case.thermal.model),
+        cavitation=str(case.film.cavitation),
+        speed=speed,
+        radial_clearance=clearance,
+        **numbers,
+        stiffness=stiffness,
+        damping=damping,
+        critical_mass=threshold.critical_mass if threshold else None,
+        critical_mass_dimensionless=threshold.critical_mass_dimensionless if threshold else None,
+        whirl_frequency_ratio=threshold.whirl_frequency_ratio if threshold else None,
+        stability=threshold.stability if threshold else None,
+        iterations=solution.iterations,
+        residual=solution.residual,
+        warnings=regime_warnings(
+            case, speed, min_film_thickness=thinnest, max_temperature=hottest,
+            mean_viscosity=mean_viscosity,
+        ),
+        heat_balance=_heat_balance(solution),
+        fields=_fields(solution, fraction) if keep_fields else None,
+    )  # fmt: skip
+
+
+def min_film_thickness(solution: FilmSolution) -> float:
+    """Smallest film thickness [m], lands only."""
+    bearing, state = solution.problem.bearing, solution.state
+    if bearing.is_plain and bearing.is_symmetric:
+        return bearing.radial_clearance - math.hypot(*state.position)
+    film = ~state.operator.held
+    thickness = state.thickness
+    parts = (thickness.center, thickness.west, thickness.east, thickness.south, thickness.north)
+    return float(min(part[film].min() for part in parts))
+
+
+def _rotation(angle: float) -> Array:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]])
+
+
+def _ratio(above: float, below: float) -> float:
+    return above / below if below > 0.0 else math.inf
+
+
+def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float]:
+    """Highest and mean temperature of the film's oil [K]."""
+    state, thermal = solution.state, solution.thermal
+    if thermal is None:
+        supply = solution.problem.thermal.supply_temperature
+        return supply, supply
+    film = ~state.operator.held
+    weight = (state.thickness.center * state.operator.area * fraction * film)[:, :, None]
+    temperature = thermal.heat.temperature
+    mean = float(np.sum(weight * temperature) / (np.sum(weight) * temperature.shape[2]))
+    return float(temperature[film].max()), mean
+
+
+def _heat_balance(solution: FilmSolution) -> HeatBalance | None:
+    thermal = solution.thermal
+    if thermal is None:
+        return None
+    problem = solution.problem
+    walls = wall_temperatures(problem.thermal, thermal.heat.bush, thermal.heat.shaft)
+    totals = heat_totals(
+        problem, thermal.energy, thermal.viscosity, thermal.heat.temperature, walls,
+        thermal.inlet_temperature,
+    )  # fmt: skip
+    return HeatBalance(totals.dissipation, totals.enthalpy_out, totals.to_bush, totals.to_shaft)
+
+
+def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
+    """Fields over the whole length, angles in the load frame."""
+    problem, state, thermal = solution.problem, solution.state, solution.thermal
+    mesh, supply = problem.mesh, problem.thermal.supply_temperature
+    layers = problem.settings.mesh.cross_film
+    shape = (*mesh.shape, layers)
+    if thermal is None:
+        temperature = np.full(shape, supply)
+        viscosity = np.full(shape, float(problem.lubricant.viscosity(supply)))
+        bush, shaft = np.full(mesh.shape, supply), supply
+    else:
+        temperature, viscosity = thermal.heat.temperature, thermal.viscosity
+        bush, shaft = thermal.heat.bush, thermal.heat.shaft
+
+    def whole(field: Array) -> Array:
+        return np.concatenate([field[:, ::-1], field], axis=1) if mesh.half else field
+
+    return FilmFields(
+        theta=mesh.theta + solution.frame,
+        y=np.concatenate([-mesh.y[::-1], mesh.y]) if mesh.half else mesh.y,
+        z=(np.arange(layers) + 0.5) / layers,
+        film_thickness=whole(state.thickness.center),
+        pressure=whole(state.solution.pressure),
+        liquid_fraction=whole(fraction),
+        temperature=whole(temperature),
+        viscosity=whole(viscosity),
+        bush_temperature=whole(bush),
+        shaft_temperature=shaft,
+    )
+
+
+def _failed(case: Case, speed: float, message: str) -> OperatingPoint:
+    """A point without numbers."""
+    nan = math.nan
+    load = case.target.load if isinstance(case.target, LoadTarget) else nan
+    return OperatingPoint(
+        status=SolveStatus.FAILED,
+        message=message,
+        thermal_model=str(case.thermal.model),
+        cavitation=str(case.film.cavitation),
+        speed=speed,
+        radial_clearance=case.bearing.radial_clearance,
+        eccentricity_ratio=nan,
+        attitude_angle=nan,
+        load=load,
+        sommerfeld_number=nan,
+        max_pressure=nan,
+        max_temperature=nan,
+        mean_temperature=nan,
+        friction_force=nan,
+        power_loss=nan,
+        side_flow=nan,
+        min_film_thickness=nan,
+        stiffness=np.full((2, 2), nan),
+        damping=np.full((2, 2), nan),
+        critical_mass=None,
+        critical_mass_dimensionless=None,
+        whirl_frequency_ratio=None,
+        stability=None,
+        iterations=0,
+        residual=nan,
+    )
+
+
+__all__ = ["WarmStart", "operating_point", "solve", "solve_case"]
