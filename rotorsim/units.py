@@ -97,12 +97,13 @@ _OWN_NAMES = {
 }
 """Names that mean something else to Pint (an angle, 1/s, nothing) than on a bearing's drawing."""
 _HINTS = {
-    "C": 'Celsius is written "degC"',
-    "F": 'Fahrenheit is written "degF"',
-    "kg": 'as a force write "kgf" or "N"',
-    "lb": 'as a force write "lbf"',
-    "kHz": 'write "Hz" or "rpm"',
-    "psig": 'supply pressures are gauge pressures; write "psi"',
+    ("C", "temperature"): 'Celsius is written "degC"',
+    ("F", "temperature"): 'Fahrenheit is written "degF"',
+    ("kg", "force"): 'that is a mass; write "N" or "kgf"',
+    ("lb", "force"): 'that is a mass; write "lbf"',
+    ("kHz", "speed"): 'write "Hz" or "rpm"',
+    ("psig", "pressure"): 'write "psi"; supply pressures are gauge pressures',
+    ("bar(g)", "pressure"): 'write "bar"; supply pressures are gauge pressures',
 }
 
 
@@ -203,10 +204,12 @@ def _conversion(text: str, kind: Kind) -> tuple[float, float]:
         unit = registry.parse_units(_checked_unit_text(text), as_delta=True)
         given = registry.Quantity(1.0, unit)
         if given.dimensionality != _dimensionality(kind):
-            raise _Refusal(_wrong_dimension(text, kind))
+            raise _Refusal(f'"{text}" is not a unit of {kind.name}{_hint(text, kind)}')
         _check_meaning(unit, text, kind)
-        zero, thousand = (registry.Quantity(n, unit).to(kind.unit).magnitude for n in (0.0, 1e3))
-        return zero, (thousand - zero) / 1e3
+        zero, one, two = (_to_si(number, unit, kind) for number in (0.0, 1.0, 2.0))
+        if not math.isclose(two - one, one - zero, rel_tol=1e-6):
+            raise _Refusal(f'"{text}" is a logarithmic scale, not a unit of {kind.name}')
+        return zero, (_to_si(1e3, unit, kind) - zero) / 1e3
     except (
         _pint_error(),
         tokenize.TokenError,
@@ -218,7 +221,11 @@ def _conversion(text: str, kind: Kind) -> tuple[float, float]:
         TypeError,
         ValueError,
     ) as error:
-        raise _Refusal(_unknown_unit(text, error)) from None
+        raise _Refusal(_unknown_unit(text, error) + _hint(text, kind)) from None
+
+
+def _to_si(number: float, unit: pint.Unit, kind: Kind) -> float:
+    return float(_registry().Quantity(number, unit).to(kind.unit).magnitude)
 
 
 def _checked_unit_text(text: str) -> str:
@@ -256,16 +263,14 @@ def _check_meaning(unit: pint.Unit, text: str, kind: Kind) -> None:
         raise _Refusal(f'"{text}" does not say of what: it is not a unit of {kind.name}{hint}')
 
 
-def _wrong_dimension(text: str, kind: Kind) -> str:
-    hint = _HINTS.get(text)
-    return f'"{text}" is not a unit of {kind.name}' + (f" ({hint})" if hint else "")
-
-
 def _unknown_unit(text: str, error: Exception) -> str:
     name = getattr(error, "unit_names", None)
-    unknown = name if isinstance(name, str) else text
-    hint = _HINTS.get(text)
-    return f'holds no known unit ("{unknown}")' + (f" ({hint})" if hint else "")
+    return f'holds no known unit ("{name if isinstance(name, str) else text}")'
+
+
+def _hint(text: str, kind: Kind) -> str:
+    hint = _HINTS.get((text, kind.name))
+    return f" ({hint})" if hint else ""
 
 
 @cache

@@ -39,6 +39,8 @@ from .schema import (
 )
 from .settings import StabilitySettings
 
+SENSIBLE_VISCOSITY = (1e-7, 1e5)
+"""Of the oil at the temperatures given [Pa s]."""
 MAX_CELLS = 20_000_000
 """Cells of the largest film or bush that is accepted."""
 
@@ -103,6 +105,7 @@ def thermal_settings(tables: ScenarioTables, oil: Lubricant) -> ThermalSettings:
         raise InputError("must hold each model once", key="thermal.models")
     heated = ThermalModel.THD in table.models
     ambient, supply = _temperatures(table, oil, heated=heated)
+    _check_viscosities(tables, oil, supply)
     if heated and table.bush is BushModel.CONDUCTION:
         _check_conduction(tables)
     given = {}
@@ -124,6 +127,28 @@ def thermal_settings(tables: ScenarioTables, oil: Lubricant) -> ThermalSettings:
         shaft_temperature=shaft_temperature,
         **given,
     )
+
+
+def _check_viscosities(tables: ScenarioTables, oil: Lubricant, supply: float) -> None:
+    """Refuse temperatures of walls and supplied oil at which the oil's law means nothing."""
+    found = {"thermal.supply_temperature": supply}
+    if tables.thermal.ambient_temperature is not None:
+        found = {"thermal.ambient_temperature": tables.thermal.ambient_temperature} | found
+    if not isinstance(tables.thermal.shaft, ShaftModel):
+        found["thermal.shaft"] = tables.thermal.shaft
+    for index, groove in enumerate(tables.bearing.groove):
+        if groove.supply_temperature is not None:
+            found[f"bearing.groove[{index}].supply_temperature"] = groove.supply_temperature
+    low, high = SENSIBLE_VISCOSITY
+    for key, temperature in found.items():
+        with np.errstate(all="ignore"):
+            viscosity = float(oil.viscosity(temperature))
+        if not low <= viscosity <= high:
+            raise InputError(
+                f"gives the oil a viscosity of {viscosity:.3g} Pa*s at {temperature:.6g} K, beyond "
+                f"sense ({low:g} to {high:g} Pa*s): check this temperature and [lubricant]",
+                key=key,
+            )
 
 
 def _check_conduction(tables: ScenarioTables) -> None:

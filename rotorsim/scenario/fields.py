@@ -82,11 +82,13 @@ def choice_or_temperature(enum: type[StrEnum], names: list[str]) -> PlainValidat
         try:
             return parse_quantity(text, "temperature")
         except InputError as error:
+            if isinstance(text, str) and any(sign.isdigit() for sign in text):
+                raise  # meant as a temperature
             raise InputError(
                 f'must be one of {allowed}, or a temperature such as "60 degC"'
-                f"{nearest(text, names)} ({error.message})",
+                f"{nearest(text, names)}",
                 value=text,
-            ) from None
+            ) from error
 
     return PlainValidator(read)
 

@@ -102,11 +102,15 @@ def as_written(
         if part in (AS_TABLE, AS_LIST) or (isinstance(part, int) and not isinstance(here, list)):
             continue
         path.append(part)
-        try:
-            here = here[part]
-        except (LookupError, TypeError):
-            here = None
+        here = _under(here, part)
     return tuple(path), here
+
+
+def _under(entries: Any, part: str | int) -> Any:
+    try:
+        return entries[part]
+    except (LookupError, TypeError):
+        return None
 
 
 def dotted(path: tuple[str | int, ...]) -> str:
@@ -165,11 +169,9 @@ def _unknown_key(path: tuple[str | int, ...]) -> str:
     *parents, last = _names(path)
     known = _keys_at(tuple(parents))
     where = f"[{'.'.join(parents)}]" if parents else _WHERE_OUTERMOST
-    close = nearest(last, known)
-    if not close:
-        elsewhere = [table for table in _tables() if table and last in _keys_at(table)]
-        close = f"; it belongs into [{'.'.join(elsewhere[0])}]" if elsewhere else ""
-    return f"is not a key of {where}{close} (known: {', '.join(known)})"
+    elsewhere = [table for table in _tables() if table and last in _keys_at(table)]
+    advice = f"; it belongs into [{'.'.join(elsewhere[0])}]" if elsewhere else nearest(last, known)
+    return f"is not a key of {where}{advice} (known: {', '.join(known)})"
 
 
 def _missing_key(path: tuple[str | int, ...]) -> str:

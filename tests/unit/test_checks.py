@@ -1,0 +1,115 @@
+"""Derived numbers against hand calculation, warnings at their limits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from rotorsim.checks import (
+    derived_numbers,
+    regime_warnings,
+    temperature_coefficient,
+)
+from rotorsim.model import (
+    Bearing,
+    Case,
+    EccentricityTarget,
+    ExponentialViscosity,
+    FilmSettings,
+    Groove,
+    Inception,
+    LoadTarget,
+    Lubricant,
+    ThermalModel,
+    ThermalSettings,
+    WaltherViscosity,
+)
+
+OMEGA = 15000 * math.pi / 30
+OIL = Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13)
+CASE = Case(Bearing(0.05, 0.08, 1e-4), OIL, FilmSettings(), ThermalSettings(), LoadTarget(20e3))
+
+
+def test_numbers_of_the_papers_bearing() -> None:
+    numbers = derived_numbers(CASE, OMEGA)
+    assert numbers.surface_speed == pytest.approx(78.5398, rel=1e-5)
+    assert numbers.unit_load == pytest.approx(2.5e6)
+    assert numbers.sommerfeld_number == pytest.approx(0.0277 * 250 / 2.5e6 * 500**2)
+    assert numbers.reynolds_number == pytest.approx(243.84, rel=1e-4)
+    assert numbers.taylor_number == pytest.approx(10.905, rel=1e-4)
+    assert numbers.peclet_number == pytest.approx(207.83, rel=1e-4)
+    assert numbers.nahme_number == pytest.approx(44.688, rel=1e-4)
+
+
+def test_temperature_rise_is_shear_power_over_flow() -> None:
+    mu, radius, length, clearance = 0.0277, 0.05, 0.08, 1e-4
+    speed = OMEGA * radius
+    power = mu * speed / clearance * (2 * math.pi * radius * length) * speed
+    flow = 0.5 * speed * clearance * length
+    rise = derived_numbers(CASE, OMEGA).adiabatic_temperature_rise
+    assert rise == pytest.approx(power / (860.0 * 2000.0 * flow), rel=1e-12)
+
+
+def test_no_load_no_sommerfeld_number() -> None:
+    numbers = derived_numbers(replace(CASE, target=EccentricityTarget(0.5)), OMEGA)
+    assert numbers.sommerfeld_number is None
+    assert numbers.unit_load is None
+
+
+def test_coefficient_of_a_walther_oil() -> None:
+    law = WaltherViscosity.from_iso_vg(32.0, 860.0)
+    case = replace(CASE, lubricant=replace(OIL, law=law))
+    temperature = 320.0
+    # d/dT of log10 log10(nu + 0.7) = A - B log10 T, by hand.
+    nu = float(law.viscosity(temperature)) / 860e-6
+    slope = law.slope * (nu + 0.7) * math.log(nu + 0.7) / (temperature * nu)
+    assert temperature_coefficient(case, temperature) == pytest.approx(slope, rel=1e-6)
+    assert temperature_coefficient(CASE, temperature) == pytest.approx(0.034, rel=1e-8)
+
+
+def test_the_papers_bearing_is_within_range() -> None:
+    assert regime_warnings(CASE, OMEGA, min_film_thickness=5e-5, max_temperature=363.0) == ()
+
+
+@pytest.mark.parametrize(
+    ("clearance", "reynolds", "words"),
+    [
+        (50e-6, 999.0, []),
+        (50e-6, 1001.0, ["Reynolds"]),
+        (200e-6, 651.0, []),  # 651 sqrt(0.004) = 41.17
+        (200e-6, 652.0, ["Taylor"]),  # 41.24
+        (200e-6, 1001.0, ["Reynolds", "Taylor"]),
+    ],
+)
+def test_flow_limits(clearance: float, reynolds: float, words: list[str]) -> None:
+    law = ExponentialViscosity(860.0 * OMEGA * 0.05 * clearance / reynolds, 313.15)
+    bearing = Bearing(0.05, 0.08, clearance)
+    case = replace(CASE, lubricant=replace(OIL, law=law), bearing=bearing)
+    assert [line.split()[0] for line in regime_warnings(case, OMEGA)] == words
+
+
+def test_a_hot_film_has_a_larger_reynolds_number() -> None:
+    found = regime_warnings(CASE, OMEGA, mean_viscosity=0.0277 / 5)
+    assert any("Reynolds number 1219" in line for line in found)
+
+
+def test_other_limits() -> None:
+    rough = replace(CASE, bearing=replace(CASE.bearing, roughness=2e-6))
+    (line,) = regime_warnings(rough, OMEGA, min_film_thickness=1e-6)
+    assert "1 um is below the roughness 2 um" in line
+    (line,) = regime_warnings(CASE, OMEGA, max_temperature=433.15)
+    assert "160.0 degC is outside the oil's range" in line
+    cold = replace(CASE, thermal=replace(CASE.thermal, supply_temperature=243.15))
+    assert any("supply temperature -30.0 degC" in line for line in regime_warnings(cold, 1.0))
+
+
+def test_a_thermal_film_wants_an_anchor() -> None:
+    free = replace(CASE, film=FilmSettings(inception=Inception.FREE))
+    assert any("anchor" in line for line in regime_warnings(free, OMEGA))
+    groove = Groove(math.pi / 2, 0.3)
+    grooved = replace(free, bearing=replace(CASE.bearing, grooves=(groove,)))
+    assert regime_warnings(grooved, OMEGA) == ()
+    isothermal = replace(free, thermal=ThermalSettings(model=ThermalModel.ISOTHERMAL))
+    assert regime_warnings(isothermal, OMEGA) == ()
