@@ -74,15 +74,27 @@ def tabulate(
     Raises
     ------
     InputError
-        `workers` below 1, or a `resume` file of another kind.
+        `workers` below 1, a `resume` file of another kind, or a case that cannot be meshed.
     """
-    from .table import CoefficientTable
-
     cases, speeds = list(scenario.cases()), [float(speed) for speed in scenario.speeds]
     points = sweep_points(
         cases, speeds, executor=executor, workers=workers, progress=progress, resume=resume
     )
-    return CoefficientTable.from_points(points, scenario)
+    return as_table(points, scenario)
+
+
+def as_table(points: Sequence[OperatingPoint], scenario: Scenario) -> CoefficientTable:
+    """Table of `points` with the provenance of `scenario`."""
+    from .table import CoefficientTable
+
+    mesh = scenario.film.mesh
+    attributes = {
+        "title": scenario.title,
+        "scenario": scenario.text,
+        "mesh": f"circumferential {mesh.circumferential}, axial {mesh.axial}, "
+        f"cross_film {mesh.cross_film}, bush_radial {mesh.bush_radial}",
+    }
+    return CoefficientTable.from_points(points, attributes)
 
 
 def sweep_points(
@@ -204,6 +216,8 @@ def _along_speed(chunk: Chunk, solve_case: Callable[..., Any] | None) -> Iterato
         try:
             point, warm = solve_case(chunk.case, speed, initial=initial)
             initial = warm if point.converged else None
+        except InputError:
+            raise  # true of the whole case: to be told, not to be tabulated
         except Exception as error:
             # Whatever a solver may raise: the sweep goes on, the message travels with the point.
             point = failed_point(chunk.case, speed, f"{type(error).__name__}: {error}")
@@ -252,6 +266,8 @@ def result_or_failure(
     """Points of a finished future; failed ones where its worker was lost."""
     try:
         return future.result()
+    except InputError:
+        raise
     except BrokenExecutor as error:
         message = f"the worker process was lost ({error})"
     except Exception as error:

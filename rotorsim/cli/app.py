@@ -1,0 +1,47 @@
+"""The commands, put together."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from .. import __version__
+from .file_commands import export, new, view
+from .film_commands import check, solve, table
+from .output import guarded
+from .rotor_commands import orbit, stability
+from .run_command import run
+
+app = typer.Typer(
+    name="rotorsim",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["--help", "-h"]},
+    rich_markup_mode="rich",
+)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"rotorsim {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None:
+    """Hydrodynamic journal bearings: from drawing and oil to a stability verdict.
+
+    Exit codes: 0 done; 1 ran, but something did not converge (what and where is said, the rest is
+    kept); 2 the input is wrong (file, key, value and what is allowed are said).
+
+    Example: rotorsim run scenarios/dal.toml
+    """
+
+
+for command in (run, check, solve, table, stability, orbit, view, export, new):
+    app.command()(guarded(command))

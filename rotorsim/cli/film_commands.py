@@ -1,0 +1,191 @@
+"""Commands up to the coefficient table: check, solve, table."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from .inputs import cluster, journal_path, table_path, wanted_cases, wanted_speeds
+from .options import (
+    ClearanceOption,
+    ModelOption,
+    ScenarioArgument,
+    SchedulerOption,
+    SpeedOption,
+    WorkersOption,
+)
+from .output import DONE, INCOMPLETE, Output
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..operating_point import OperatingPoint
+    from ..scenario import Scenario
+    from ..table import CoefficientTable
+
+MANY = 4
+"""Points from which on a list is shown instead of each in full."""
+
+
+def check(output: Output, scenario: ScenarioArgument) -> int:
+    """Validate a scenario; show what would run, derived numbers and warnings.
+
+    Example: rotorsim check scenarios/dal.toml
+    """
+    from ..checks import derived_numbers, regime_warnings
+    from ..scenario import load_scenario
+
+    loaded = load_scenario(scenario)
+    top = float(loaded.speeds[-1])
+    cases: list[dict[str, Any]] = []
+    warnings: list[str] = []
+    for case in loaded.cases():
+        cases.append(
+            {
+                "thermal_model": case.thermal.model,
+                "radial_clearance": case.bearing.radial_clearance,
+                "speed": top,
+                **dataclasses.asdict(derived_numbers(case, top)),
+            }
+        )
+        warnings += [text for text in regime_warnings(case, top) if text not in warnings]
+    output.document(
+        {
+            "scenario": scenario,
+            "title": loaded.title,
+            "sha256": loaded.sha256,
+            "points": len(cases) * len(loaded.speeds),
+            "speeds": loaded.speeds,
+            "cases": cases,
+            "warnings": warnings,
+        }
+    )
+    if not (output.json or output.quiet):
+        from .check_table import overview
+
+        output.show(*overview(loaded, cases))
+    for text in warnings:
+        output.warn(text)
+    return DONE
+
+
+def solve(
+    output: Output,
+    scenario: ScenarioArgument,
+    speed: SpeedOption = None,
+    clearance: ClearanceOption = None,
+    model: ModelOption = None,
+    workers: WorkersOption = None,
+) -> int:
+    """Solve operating points: pressure, temperature, forces, K, C, stability.
+
+    Example: rotorsim solve scenarios/dal.toml --speed "15000 rpm" --clearance "100 um" --json
+    """
+    from ..records import point_to_dict
+    from ..scenario import load_scenario
+    from ..sweep import sweep_points
+    from .progress import film_progress
+
+    loaded = load_scenario(scenario)
+    cases = wanted_cases(loaded, clearance, model)
+    speeds = wanted_speeds(loaded, speed)
+    total = len(cases) * len(speeds)
+    if workers is None and total < MANY:
+        workers = 1  # starting another process takes longer than the work
+    with film_progress(output, total) as progress:
+        points = sweep_points(cases, speeds, workers=workers, progress=progress)
+    output.document({"points": [point_to_dict(point) for point in points]})
+    if not (output.json or output.quiet):
+        from .tables import point_table, points_table
+
+        if total < MANY:
+            output.show(*(point_table(point) for point in points))
+        else:
+            output.show(points_table(points, loaded.title))
+    return report_points(output, points)
+
+
+def table(
+    output: Output,
+    scenario: ScenarioArgument,
+    file: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="The table.", show_default="coefficients/NAME.nc"
+        ),
+    ] = None,
+    workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
+) -> int:
+    """Compute the speed-indexed coefficient table (netCDF). Interrupted, it resumes.
+
+    Example: rotorsim table scenarios/dal.toml -o coefficients/dal.nc
+    """
+    from ..records import point_to_dict
+    from ..scenario import load_scenario
+
+    loaded = load_scenario(scenario)
+    path = file or table_path(scenario, Path())
+    points, _ = computed_table(output, loaded, path, workers, scheduler)
+    counts = Counter(point.status.value for point in points)
+    output.document(
+        {"table": path, "counts": counts, "points": [point_to_dict(point) for point in points]}
+    )
+    said = ", ".join(f"{count} {status}" for status, count in counts.items())
+    output.show(f"{len(points)} points ({said}) in {path}")
+    return report_points(output, points)
+
+
+def computed_table(
+    output: Output,
+    scenario: Scenario,
+    path: Path,
+    workers: int | None = None,
+    scheduler: str | None = None,
+) -> tuple[list[OperatingPoint], CoefficientTable]:
+    """Points and table of `scenario`, saved to `path`; a journal next to it until then."""
+    from ..journal import Journal
+    from ..sweep import as_table, sweep_points
+    from .progress import film_progress
+
+    journal = journal_path(path)
+    cases = list(scenario.cases())
+    before = len(Journal(journal))
+    if before:
+        output.note(f"resuming: {before} points are in {journal}")
+    output.kept.append(f"finished points are in {journal}; the same command resumes there")
+    with (
+        cluster(scheduler) as executor,
+        film_progress(output, len(cases) * len(scenario.speeds)) as progress,
+    ):
+        points = sweep_points(
+            cases,
+            [float(speed) for speed in scenario.speeds],
+            executor=executor,
+            workers=workers,
+            progress=progress,
+            resume=journal,
+        )
+    made = as_table(points, scenario)
+    made.save(path)
+    journal.unlink(missing_ok=True)
+    output.kept[-1] = f"the table is in {path}"
+    return points, made
+
+
+def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
+    """Say what did not converge and what left the model's range; the exit code."""
+    from .progress import describe
+
+    bad = [point for point in points if not point.converged]
+    for point in bad[:5]:
+        output.warn(f"{describe(point)}: {point.message}")
+    if len(bad) > 5:
+        output.warn(f"and {len(bad) - 5} more points that are not converged")
+    for text, count in Counter(text for point in points for text in point.warnings).items():
+        output.warn(f"{text} (at {count} of {len(points)} points)")
+    return INCOMPLETE if bad else DONE

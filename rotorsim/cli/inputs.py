@@ -1,0 +1,85 @@
+"""From what was typed to what is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..errors import InputError
+
+if TYPE_CHECKING:
+    from ..model import Case
+    from ..scenario import Scenario
+
+
+def wanted_cases(scenario: Scenario, clearance: str | None, model: str | None) -> list[Case]:
+    """Cases of `scenario` that the options ``--clearance`` and ``--model`` leave."""
+    from ..units import parse_quantity
+
+    clearances, models = scenario.radial_clearances, scenario.thermal_models
+    if clearance is not None:
+        clearances = (parse_quantity(clearance, "length", key="--clearance", example="100 um"),)
+    if model is not None:
+        models = (model,)
+    return [scenario.case(one, kind) for kind in models for one in clearances]
+
+
+def wanted_speeds(scenario: Scenario, speed: str | None) -> list[float]:
+    """Speeds [rad/s]: those of `scenario`, or the one of ``--speed`` (any, within it or not)."""
+    if speed is None:
+        return [float(one) for one in scenario.speeds]
+    from ..units import parse_quantity
+
+    value = parse_quantity(speed, "speed", key="--speed", example="15000 rpm")
+    if value <= 0.0:
+        raise InputError("must be above 0", key="--speed", value=speed)
+    return [value]
+
+
+def wanted_mass(mass: str | None) -> float | None:
+    """Rotor mass per bearing [kg] of ``--mass``."""
+    if mass is None:
+        return None
+    from ..units import parse_quantity
+
+    value = parse_quantity(mass, "mass", key="--mass", example="1200 kg")
+    if value <= 0.0:
+        raise InputError("must be above 0", key="--mass", value=mass)
+    return value
+
+
+@contextmanager
+def cluster(address: str | None) -> Iterator[Executor | None]:
+    """Executor on the Dask scheduler at `address`; None where there is no address."""
+    if address is None:
+        yield None
+        return
+    try:
+        client_class = import_module("distributed").Client
+    except ImportError:
+        raise InputError(
+            'needs the extra "cluster": python -m pip install "rotorsim[cluster]"',
+            key="--scheduler",
+        ) from None
+    try:
+        client = client_class(address, timeout="10s")
+    except (OSError, ValueError, TimeoutError) as error:
+        raise InputError(
+            f"no scheduler answers ({error})", key="--scheduler", value=address
+        ) from None
+    with client:
+        yield client.get_executor()
+
+
+def table_path(scenario: Path, folder: Path) -> Path:
+    """``coefficients/NAME.nc`` in `folder`."""
+    return folder / "coefficients" / f"{scenario.stem}.nc"
+
+
+def journal_path(table: Path) -> Path:
+    """Journal of the sweep that makes `table`, next to it."""
+    return table.with_name(table.name + ".journal")

@@ -1,0 +1,69 @@
+"""Arguments and options that several commands share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ScenarioArgument = Annotated[
+    Path, typer.Argument(metavar="SCENARIO", help="Scenario file (TOML).", show_default=False)
+]
+JsonOption = Annotated[
+    bool, typer.Option("--json", help="Print the results as one JSON document on stdout (SI).")
+]
+QuietOption = Annotated[
+    bool, typer.Option("--quiet", "-q", help="No progress, no tables; errors still show.")
+]
+OutputFolder = Annotated[
+    Path,
+    typer.Option(
+        "--output", "-o", metavar="DIR", help="Folder for what is written.", show_default="here"
+    ),
+]
+WorkersOption = Annotated[
+    int | None,
+    typer.Option(
+        "--workers", "-w", metavar="N", help="Processes; 1: none extra.", show_default="all cores"
+    ),
+]
+SchedulerOption = Annotated[
+    str | None,
+    typer.Option(
+        "--scheduler",
+        metavar="ADDRESS",
+        help="Dask scheduler to compute on, e.g. tcp://host:8786 (extra: cluster).",
+        show_default=False,
+    ),
+]
+ModelOption = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        "-m",
+        metavar="NAME",
+        help="Only this thermal model: isothermal or thd.",
+        show_default="the scenario's",
+    ),
+]
+ClearanceOption = Annotated[
+    str | None,
+    typer.Option(
+        "--clearance",
+        "-c",
+        metavar="LENGTH",
+        help='Only this radial clearance, e.g. "100 um".',
+        show_default="the scenario's",
+    ),
+]
+SpeedOption = Annotated[
+    str | None,
+    typer.Option(
+        "--speed",
+        "-s",
+        metavar="SPEED",
+        help='Only this speed, e.g. "15000 rpm".',
+        show_default="the scenario's",
+    ),
+]

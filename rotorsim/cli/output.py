@@ -1,0 +1,157 @@
+"""Where words go: results to stdout, progress and complaints to stderr; and the exit codes."""
+
+from __future__ import annotations
+
+import functools
+import os
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from ..errors import InputError, RotorsimError
+from ..records import strict_json
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+
+DONE = 0
+"""Everything asked for was computed."""
+INCOMPLETE = 1
+"""Ran, but something did not converge or left its range; the rest is kept."""
+WRONG_INPUT = 2
+"""Nothing was computed: the input must be changed first."""
+INTERRUPTED = 130
+"""Stopped by the user (the shells' code for it)."""
+
+_TABLE_WIDTH = 100
+
+
+@dataclass
+class Output:
+    """One command's way to talk.
+
+    Parameters
+    ----------
+    json : bool
+        One JSON document on stdout and nothing else there.
+    quiet : bool
+        Neither progress nor tables; errors still show.
+    kept : list of str
+        What an interruption would leave behind, for the farewell.
+    """
+
+    json: bool = False
+    quiet: bool = False
+    kept: list[str] = field(default_factory=list)
+
+    def show(self, *parts: RenderableType) -> None:
+        """Show results for people on stdout."""
+        if not (self.json or self.quiet):
+            for part in parts:
+                self.people.print(part)
+                self.people.print()
+
+    def document(self, value: Any) -> None:
+        """Print results for programs: the one JSON document."""
+        if self.json:
+            print(strict_json(value))
+
+    def note(self, text: str) -> None:
+        """Say what goes on, on stderr."""
+        if not self.quiet:
+            self.errors.print(text, markup=False, highlight=False)
+
+    def warn(self, text: str) -> None:
+        """Say what the user should know, on stderr, quiet or not."""
+        self.errors.print(f"warning: {text}", style="yellow", markup=False, highlight=False)
+
+    def complain(self, text: str) -> None:
+        """Say what is wrong, on stderr."""
+        self.errors.print(f"error: {text}", style="bold red", markup=False, highlight=False)
+
+    @functools.cached_property
+    def people(self) -> Console:
+        """Console on stdout."""
+        from rich.console import Console
+
+        console = Console()
+        # Piped output has no width of its own; a table cut at 80 would lose columns.
+        width = min(console.width, _TABLE_WIDTH) if console.is_terminal else _TABLE_WIDTH
+        return Console(width=width, highlight=False)
+
+    @functools.cached_property
+    def errors(self) -> Console:
+        """Console on stderr."""
+        from rich.console import Console
+
+        return Console(stderr=True, soft_wrap=True)
+
+
+def guarded(command: Callable[..., int]) -> Callable[..., None]:
+    """Make a command that returns its exit code safe to call: no traceback for what can go wrong.
+
+    The command's first parameter is the `Output`; it is made from the options ``--json`` and
+    ``--quiet`` that `command` need not declare.
+    """
+    import inspect
+
+    from .options import JsonOption, QuietOption
+
+    @functools.wraps(command)
+    def run(*, json_output: bool, quiet: bool, **options: Any) -> None:
+        output = Output(json=json_output, quiet=quiet)
+        try:
+            code = command(output, **options)
+            sys.stdout.flush()
+        except Exception as error:
+            code = _explain(error, output)
+        except KeyboardInterrupt:
+            kept = "; ".join(output.kept) or "nothing was changed"
+            output.errors.print(f"interrupted: {kept}", markup=False, highlight=False)
+            code = INTERRUPTED
+        raise typer.Exit(code)
+
+    signature = inspect.signature(command, eval_str=True)
+    keyword = inspect.Parameter.KEYWORD_ONLY
+    own = [entry.replace(kind=keyword) for entry in list(signature.parameters.values())[1:]]
+    common = [
+        inspect.Parameter("json_output", keyword, default=False, annotation=JsonOption),
+        inspect.Parameter("quiet", keyword, default=False, annotation=QuietOption),
+    ]
+    del run.__wrapped__  # type: ignore[attr-defined]
+    run.__signature__ = signature.replace(parameters=own + common)  # type: ignore[attr-defined]
+    run.__annotations__ = {entry.name: entry.annotation for entry in own + common}
+    return run
+
+
+def _explain(error: Exception, output: Output) -> int:
+    if isinstance(error, typer.Exit):
+        raise error
+    if isinstance(error, BrokenPipeError):
+        # The reader of a pipe left (``| head``): nobody listens, and that is no error.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    if os.environ.get("ROTORSIM_DEBUG"):
+        raise error
+    details: dict[str, Any] = {"message": str(error)}
+    if isinstance(error, RotorsimError):
+        code, text = WRONG_INPUT, str(error)
+        if isinstance(error, InputError):
+            details |= {"source": error.source, "key": error.key, "value": error.value}
+    elif isinstance(error, OSError):
+        code, text = WRONG_INPUT, f"{error.filename or 'file'}: {error.strerror or error}"
+    else:
+        code = INCOMPLETE
+        text = (
+            f"unexpected {type(error).__name__}: {error}\n"
+            "This is a fault of the program. Please report it with the scenario and what "
+            "ROTORSIM_DEBUG=1 in the environment prints."
+        )
+    for part in output.kept:
+        output.note(f"kept: {part}")
+    output.complain(text)
+    output.document({"error": details})
+    return code

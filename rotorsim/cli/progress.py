@@ -1,0 +1,78 @@
+"""Progress on stderr: a bar with the remaining time on a terminal, a few lines elsewhere."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from ..operating_point import OperatingPoint
+    from ..sweep import Progress
+    from .output import Output
+
+_QUIET_SECONDS = 10.0
+"""Between two lines where no bar can be drawn (a log file, a pipe)."""
+
+
+@contextmanager
+def film_progress(output: Output, total: int) -> Iterator[Progress | None]:
+    """Give the callback for a sweep of `total` points."""
+    if output.quiet:
+        yield None
+    elif output.errors.is_terminal:
+        with _bar(output, total) as progress:
+            yield progress
+    else:
+        yield _Lines(output)
+
+
+@contextmanager
+def _bar(output: Output, total: int) -> Iterator[Progress]:
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeRemainingColumn(elapsed_when_finished=True),
+        TextColumn("{task.fields[last]}", style="dim"),
+    )
+    with Bar(*columns, console=output.errors, transient=False) as bar:
+        task = bar.add_task("film points", total=total, last="")
+
+        def report(done: int, _total: int, point: OperatingPoint) -> None:
+            bar.update(task, completed=done, last=describe(point))
+
+        yield report
+        bar.update(task, last="")
+
+
+class _Lines:
+    def __init__(self, output: Output) -> None:
+        self.output = output
+        self.start = self.last = time.monotonic()
+
+    def __call__(self, done: int, total: int, _point: OperatingPoint) -> None:
+        now = time.monotonic()
+        if now - self.last < _QUIET_SECONDS and done < total:
+            return
+        self.last = now
+        spent = now - self.start
+        left = f", about {spent / done * (total - done):.0f} s left" if done < total else ""
+        self.output.note(f"film points {done}/{total} after {spent:.0f} s{left}")
+
+
+def describe(point: OperatingPoint) -> str:
+    """``thd 100 um 15000 rpm``, and the status where it is not converged."""
+    text = (
+        f"{point.thermal_model} {point.radial_clearance * 1e6:.4g} um {in_rpm(point.speed):.0f} rpm"
+    )
+    return text if point.converged else f"{text}: {point.status.value}"
+
+
+def in_rpm(speed: float) -> float:
+    """Revolutions per minute from rad/s."""
+    return speed * 30.0 / 3.141592653589793

@@ -1,0 +1,157 @@
+"""Commands from the table on: stability, orbit."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..errors import InputError
+from .film_commands import computed_table
+from .inputs import table_path, wanted_mass
+from .options import ModelOption, ScenarioArgument, SchedulerOption, WorkersOption
+from .output import DONE, INCOMPLETE, Output
+
+if TYPE_CHECKING:
+    from ..scenario import Scenario
+    from ..table import CoefficientTable
+
+
+def stability(
+    output: Output,
+    source: Annotated[
+        Path, typer.Argument(metavar="TABLE-or-SCENARIO", help="netCDF or CSV table, or scenario.")
+    ],
+    mass: Annotated[
+        str | None,
+        typer.Option(
+            "--mass",
+            metavar="MASS",
+            help='Rotor mass per bearing, e.g. "1200 kg".',
+            show_default="the scenario's",
+        ),
+    ] = None,
+    workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
+) -> int:
+    """Critical mass, whirl ratio, eigenvalues and threshold speeds.
+
+    Example: rotorsim stability coefficients/dal.nc --mass "1200 kg"
+    """
+    from ..pipeline.stability import stability_curves
+
+    wanted = wanted_mass(mass)
+    scenario, table = _table_of(output, source, workers, scheduler)
+    if wanted is None and scenario is not None and scenario.rotor is not None:
+        wanted = scenario.rotor.mass
+    curves = stability_curves(table, wanted)
+    output.document(
+        {
+            "mass": wanted,
+            "curves": [
+                {
+                    **curve.choices,
+                    **{
+                        field.name: getattr(curve, field.name)
+                        for field in dataclasses.fields(curve)
+                        if field.name not in ("choices", "mass")
+                    },
+                    "decay_rate": curve.decay_rate,
+                }
+                for curve in curves
+            ],
+        }
+    )
+    if not (output.json or output.quiet):
+        from .stability_tables import curve_table, summary_table
+
+        output.show(*(curve_table(curve) for curve in curves))
+        output.show(summary_table(curves))
+    bad = int((~table.converged).sum())
+    if bad:
+        output.warn(f"{bad} of {table.converged.size} points of the table are not converged")
+    return INCOMPLETE if bad else DONE
+
+
+def orbit(
+    output: Output,
+    scenario: ScenarioArgument,
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            "--table", "-t", metavar="FILE", help="Use this table.", show_default="computed"
+        ),
+    ] = None,
+    model: ModelOption = None,
+    recording: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="The recording.", show_default="logs/NAME.rrd"
+        ),
+    ] = None,
+    workers: WorkersOption = None,
+) -> int:
+    """Simulate the scenario's orbit in time and record it.
+
+    Example: rotorsim orbit scenarios/dal.toml --table coefficients/dal.nc
+    """
+    from ..pipeline import orbit_settings, record, simulate_orbit
+    from ..scenario import load_scenario
+    from ..table import CoefficientTable
+
+    loaded = load_scenario(scenario)
+    orbit_settings(loaded)  # what is missing should be said before the table is computed
+    if table is None:
+        _, coefficients = computed_table(output, loaded, table_path(scenario, Path()), workers)
+    else:
+        coefficients = CoefficientTable.load(table)
+    names = (
+        [model] if model else [str(name) for name in coefficients.dataset["thermal_model"].values]
+    )
+    orbits = [simulate_orbit(loaded, coefficients, thermal_model=name) for name in names]
+    path = record(orbits, recording or Path("logs") / f"{scenario.stem}.rrd", title=loaded.title)
+    rows = [orbit_summary(one) for one in orbits]
+    output.document({"recording": path, "orbits": rows})
+    if not (output.json or output.quiet):
+        from .stability_tables import orbit_table
+
+        output.show(orbit_table(rows), f"recorded in {path}; look at it: rotorsim view {path}")
+    failed = [one for one in orbits if one.status.value == "integration_failed"]
+    for one in failed:
+        output.warn(f"orbit {one.thermal_model}: {one.message}")
+    return INCOMPLETE if failed else DONE
+
+
+def _table_of(
+    output: Output, source: Path, workers: int | None, scheduler: str | None
+) -> tuple[Scenario | None, CoefficientTable]:
+    """Table at `source`, with the scenario it was made from where that is known."""
+    from ..scenario import Scenario, load_scenario
+    from ..table import CoefficientTable
+
+    if source.suffix == ".csv":
+        return None, CoefficientTable.from_csv(source)
+    if source.suffix == ".nc":
+        table = CoefficientTable.load(source)
+        text = table.dataset.attrs.get("scenario")
+        if not text:
+            return None, table
+        try:
+            return Scenario.from_text(str(text), source=source), table
+        except InputError as error:
+            output.note(f"the table's scenario cannot be read here, so give --mass: {error}")
+            return None, table
+    scenario = load_scenario(source)
+    path = table_path(source, Path())
+    _, table = computed_table(output, scenario, path, workers, scheduler)
+    output.note(f"the table is in {path}")
+    return scenario, table
+
+
+def orbit_summary(orbit: object) -> dict[str, object]:
+    """What is said of an orbit in one line."""
+    from ..pipeline.summary import describe_orbit
+
+    return describe_orbit(orbit)  # type: ignore[arg-type]

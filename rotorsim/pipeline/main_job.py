@@ -1,0 +1,189 @@
+"""The main job after the table: stability, orbits, film fields; then everything written."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from ..errors import RotorsimError
+from ..scenario.settings import SpeedRamp
+from . import orbits as orbit_steps
+from .stability import StabilityCurve, stability_curves
+from .summary import describe_orbit, expected_growth, heating_effect
+
+if TYPE_CHECKING:
+    from ..operating_point import OperatingPoint
+    from ..orbit import Orbit
+    from ..scenario import Scenario
+    from ..stability import StabilityMap
+    from ..table import CoefficientTable
+
+Result = TypeVar("Result")
+Announce = Callable[[str], None]
+FILM_FRAMES = 12
+"""Speeds at which the film's fields are kept for the recording."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything the main job computed (SI); what failed is missing and named in `problems`.
+
+    Attributes
+    ----------
+    scenario : Scenario
+    table : CoefficientTable
+    points : tuple of OperatingPoint
+    curves : tuple of StabilityCurve
+    chart : StabilityMap or None
+    orbits : tuple of Orbit
+        Each thermal model at constant speed, then each through the run-up.
+    films : tuple of OperatingPoint
+        With fields, in the orbit's clearance, ascending speed for each thermal model.
+    problems : tuple of str
+        What went wrong, where, and what to do.
+    """
+
+    scenario: Scenario
+    table: CoefficientTable
+    points: tuple[OperatingPoint, ...] = ()
+    curves: tuple[StabilityCurve, ...] = ()
+    chart: StabilityMap | None = None
+    orbits: tuple[Orbit, ...] = ()
+    films: tuple[OperatingPoint, ...] = ()
+    problems: tuple[str, ...] = ()
+
+    @property
+    def rotor_mass(self) -> float | None:
+        """Per bearing [kg]; None without a rotor."""
+        rotor = self.scenario.rotor
+        return None if rotor is None else rotor.mass
+
+
+@dataclass
+class Attempts:
+    """Steps of which one may fail without costing the others."""
+
+    announce: Announce
+    problems: list[str] = field(default_factory=list)
+
+    def __call__(self, label: str, step: Callable[[], Result], instead: Result) -> Result:
+        """Announce and do one step; note a failure and go on with `instead`."""
+        self.announce(label)
+        try:
+            return step()
+        except RotorsimError as error:
+            self.problems.append(f"{label}: {error}")
+        except Exception as error:
+            # A fault in one step must not cost what the others computed.
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            where = f"{Path(place.filename).name}:{place.lineno}"
+            self.problems.append(f"{label}: {type(error).__name__}: {error} ({where})")
+        return instead
+
+
+def compute(
+    scenario: Scenario,
+    points: Sequence[OperatingPoint],
+    table: CoefficientTable,
+    announce: Announce = lambda _text: None,
+) -> Results:
+    """Do everything that follows from the table; nothing is written."""
+    attempt = Attempts(announce)
+    mass = None if scenario.rotor is None else scenario.rotor.mass
+    curves = attempt("critical mass and eigenvalues", lambda: stability_curves(table, mass), [])
+    chart = attempt("stability map", lambda: map_of(scenario, table), None)
+    orbits: list[Orbit] = []
+    films: list[OperatingPoint] = []
+    if scenario.orbit is not None:
+        settings, _ = orbit_steps.orbit_settings(scenario)
+        ramped = isinstance(settings.speed, SpeedRamp)
+        for companion in (False, True):
+            for model in scenario.thermal_models:
+                kind = "changing" if ramped != companion else "constant"
+                label = f"orbit at {kind} speed, {model.value}"
+                orbit = attempt(
+                    label,
+                    lambda model=model, companion=companion: one_orbit(
+                        scenario, table, model.value, companion
+                    ),
+                    None,
+                )
+                orbits += [] if orbit is None else [orbit]
+        films = attempt("film fields", lambda: film_frames(scenario, settings.radial_clearance), [])
+    return Results(
+        scenario=scenario,
+        table=table,
+        points=tuple(points),
+        curves=tuple(curves),
+        chart=chart,
+        orbits=tuple(orbits),
+        films=tuple(films),
+        problems=tuple(attempt.problems),
+    )
+
+
+def one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion: bool) -> Orbit:
+    """The scenario's orbit with one thermal model, or its companion (see `companion_schedule`)."""
+    from ..orbit import simulate
+
+    settings, _ = orbit_steps.orbit_settings(scenario)
+    schedule = orbit_steps.companion_schedule(settings, table) if companion else None
+    return simulate(
+        orbit_steps.orbit_problem(scenario, table, thermal_model=model, schedule=schedule)
+    )
+
+
+def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
+    """Stability map over the scenario's masses, or the map's own choice."""
+    from ..stability import stability_map
+
+    settings = scenario.stability
+    if settings is not None and settings.mass:
+        return stability_map(table, mass=np.asarray(settings.mass))
+    return stability_map(table)
+
+
+def film_frames(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
+    """Film with fields over the speeds, for each thermal model; each warm-starts the next."""
+    from ..solver import solve_case
+
+    count = min(len(scenario.speeds), FILM_FRAMES)
+    chosen = np.unique(np.linspace(0, len(scenario.speeds) - 1, count).round().astype(int))
+    frames = []
+    for model in scenario.thermal_models:
+        case, warm = scenario.case(clearance, model), None
+        for speed in scenario.speeds[chosen]:
+            point, warm = solve_case(case, float(speed), initial=warm, keep_fields=True)
+            if point.converged:
+                frames.append(point)
+            else:
+                warm = None
+    return frames
+
+
+def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
+    """The closing words as plain data: counts, heating's effect, orbits, files, problems."""
+    counts: dict[str, int] = {}
+    for point in results.points:
+        counts[point.status.value] = counts.get(point.status.value, 0) + 1
+    mass = results.rotor_mass
+    rows = []
+    for orbit in results.orbits:
+        row = describe_orbit(orbit)
+        if row["kind"] == "constant speed" and mass is not None:
+            row["eigenvalue_growth_rate"] = expected_growth(results.table, orbit, mass)
+        rows.append(row)
+    return {
+        "title": results.scenario.title,
+        "counts": counts,
+        "rotor_mass": mass,
+        "heating": heating_effect(results.points, results.curves),
+        "orbits": rows,
+        "files": files,
+        "problems": list(results.problems),
+    }

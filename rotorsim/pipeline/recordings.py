@@ -1,0 +1,104 @@
+"""From results to what a recording shows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ..orbit import Orbit
+    from ..recording import EigenvaluePath, OrbitTrack
+    from .stability import StabilityCurve
+
+
+def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "Orbits") -> Path:
+    """Write orbits as a recording for the rerun viewer.
+
+    Parameters
+    ----------
+    orbits : Orbit or iterable of Orbit
+    path : str or Path
+        Usually ``logs/NAME.rrd``.
+    title : str
+
+    Returns
+    -------
+    Path
+        The file written; `rotorsim.open_viewer` or ``rotorsim view`` opens it.
+    """
+    from ..orbit import Orbit
+    from ..recording import RecordingContents, write_recording
+
+    several = [orbits] if isinstance(orbits, Orbit) else list(orbits)
+    contents = RecordingContents(title=title, orbits=tuple(orbit_tracks(several)))
+    return write_recording(path, contents)
+
+
+def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
+    """Tracks of `orbits`, named by thermal model, and numbered where that is not enough."""
+    from ..recording import OrbitTrack
+
+    tracks: list[OrbitTrack] = []
+    for orbit in orbits:
+        constant = np.ptp(orbit.speed) <= 1e-9 * abs(orbit.speed[0])
+        base = orbit.thermal_model if constant else f"{orbit.thermal_model}_run_up"
+        taken = [track.name for track in tracks]
+        name, number = base, 2
+        while name in taken:
+            name, number = f"{base}_{number}", number + 1
+        tracks.append(
+            OrbitTrack(
+                name=name,
+                time=orbit.t,
+                x=orbit.x,
+                y=orbit.y,
+                angle=orbit.angle,
+                speed=orbit.speed,
+                radial_clearance=orbit.radial_clearance,
+                equilibrium=np.asarray(orbit.equilibrium),
+                force=np.column_stack([orbit.fx, orbit.fy]),
+                title=name.replace("_", " "),
+            )
+        )
+    return tracks
+
+
+def eigenvalue_path(curve: StabilityCurve, name: str) -> EigenvaluePath | None:
+    """Eigenvalues of one curve, branch by branch; None where there are none to show."""
+    from ..recording import EigenvaluePath
+
+    if curve.eigenvalues is None:
+        return None
+    known = np.isfinite(curve.eigenvalues).all(axis=1)
+    if known.sum() < 2:
+        return None
+    threshold = curve.threshold_speeds[0] if curve.threshold_speeds else None
+    ratio = None
+    if threshold is not None:
+        usable = np.isfinite(curve.whirl_frequency_ratio)
+        ratio = float(
+            np.interp(threshold, curve.speed[usable], curve.whirl_frequency_ratio[usable])
+        )
+    return EigenvaluePath(
+        name=name,
+        speed=curve.speed[known],
+        eigenvalues=follow_branches(curve.eigenvalues[known]),
+        threshold_speed=threshold,
+        whirl_frequency_ratio=ratio,
+    )
+
+
+def follow_branches(eigenvalues: np.ndarray) -> np.ndarray:
+    """Reorder each row of (n, k) eigenvalues so that every column is one continuous branch."""
+    from scipy.optimize import linear_sum_assignment
+
+    ordered = eigenvalues.copy()
+    for row in range(1, len(ordered)):
+        # Where two steps are known the next is guessed on their line: branches may cross.
+        guess = ordered[row - 1] if row < 2 else 2.0 * ordered[row - 1] - ordered[row - 2]
+        distance = np.abs(guess[:, None] - eigenvalues[row][None, :])
+        ordered[row] = eigenvalues[row][linear_sum_assignment(distance)[1]]
+    return ordered

@@ -1,0 +1,108 @@
+"""What the closing words say, as plain data (SI)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..operating_point import OperatingPoint
+    from ..orbit import Orbit
+    from ..table import CoefficientTable
+    from .stability import StabilityCurve
+
+_EXPECTED_TOLERANCE = 1e-9
+
+
+def describe_orbit(orbit: Orbit) -> dict[str, Any]:
+    """Run and outcome of one orbit: status, extent, growth rate where the speed is constant."""
+    constant = bool(np.ptp(orbit.speed) <= _EXPECTED_TOLERANCE * abs(orbit.speed[0]))
+    growth = _growth(orbit) if constant else None
+    return {
+        "thermal_model": orbit.thermal_model,
+        "kind": "constant speed" if constant else "run-up" if _rises(orbit) else "coast-down",
+        "radial_clearance": orbit.radial_clearance,
+        "speed": [float(orbit.speed[0]), float(orbit.speed[-1])],
+        "duration": float(orbit.t[-1]),
+        "revolutions": float(orbit.revolutions[-1]),
+        "status": orbit.status,
+        "message": orbit.message,
+        "max_eccentricity_ratio": float(orbit.eccentricity_ratio.max()),
+        "growth_rate": None if growth is None else growth.rate,
+        "whirl_frequency_ratio": None if growth is None else growth.whirl_frequency_ratio,
+        "events": [
+            {"name": event.name, "time": event.time, "x": event.x, "y": event.y}
+            for event in orbit.events
+        ],
+    }
+
+
+def _rises(orbit: Orbit) -> bool:
+    return bool(orbit.speed[-1] > orbit.speed[0])
+
+
+def _growth(orbit: Orbit) -> Any:
+    from ..errors import InputError
+    from ..orbit import growth_rate
+
+    try:
+        return growth_rate(orbit)
+    except InputError:  # ended too early to measure anything
+        return None
+
+
+def expected_growth(table: CoefficientTable, orbit: Orbit, mass: float) -> float | None:
+    """Growth rate that the eigenvalues give for the orbit's last speed [1/s]."""
+    from ..errors import InputError
+    from ..stability.rates import eigenvalues
+
+    try:
+        film = table.at(
+            float(orbit.speed[-1]),
+            thermal_model=orbit.thermal_model,
+            radial_clearance=orbit.radial_clearance,
+        )
+    except InputError:
+        return None
+    return float(eigenvalues(film.stiffness, film.damping, mass).real.max())
+
+
+def heating_effect(
+    points: Sequence[OperatingPoint], curves: Sequence[StabilityCurve]
+) -> list[dict[str, Any]]:
+    """Isothermal against THD at the highest speed, clearance by clearance.
+
+    Returns
+    -------
+    list of dict
+        ``radial_clearance``, ``speed``, and for each model's name its load, friction, peak
+        pressure and temperature, critical mass and first threshold speed.
+    """
+    top = max((point.speed for point in points), default=0.0)
+    thresholds = {
+        (curve.choices["thermal_model"], curve.choices["radial_clearance"]): curve.threshold_speeds
+        for curve in curves
+    }
+    rows: dict[float, dict[str, Any]] = {}
+    for point in points:
+        if point.speed != top:
+            continue
+        row = rows.setdefault(
+            point.radial_clearance, {"radial_clearance": point.radial_clearance, "speed": top}
+        )
+        found = thresholds.get((point.thermal_model, point.radial_clearance), ())
+        row[point.thermal_model] = {
+            "status": point.status,
+            "load": point.load,
+            "friction_force": point.friction_force,
+            "max_pressure": point.max_pressure,
+            "max_temperature": point.max_temperature,
+            "min_film_thickness": point.min_film_thickness,
+            "critical_mass": point.critical_mass,
+            "stability": point.stability,
+            "threshold_speed": found[0] if found else None,
+        }
+    return list(rows.values())

@@ -1,0 +1,104 @@
+"""Writing what the main job computed: recording and figures."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .main_job import Announce, Attempts, Results, summary
+from .recordings import eigenvalue_path, orbit_tracks
+
+if TYPE_CHECKING:
+    from ..recording import RecordingContents
+
+KELVIN = 273.15
+RPM = 30.0 / np.pi
+
+
+def write_results(
+    results: Results, folder: Path, name: str, announce: Announce = lambda _text: None
+) -> tuple[dict[str, list[Path]], list[str]]:
+    """Write figures and recording.
+
+    Returns
+    -------
+    files : dict
+        ``figures`` and ``recording``, each the paths that were written.
+    problems : list of str
+        What could not be written, and why.
+    """
+    attempt = Attempts(announce)
+    figures: list[Path] = attempt(
+        "figures", lambda: write_figures(results, folder / "figures" / name), []
+    )
+    recording: list[Path] = attempt(
+        "recording", lambda: [write_recording_of(results, folder / "logs" / f"{name}.rrd")], []
+    )
+    return {"figures": figures, "recording": recording}, attempt.problems
+
+
+def write_recording_of(results: Results, path: Path) -> Path:
+    """Write the whole recording: orbits, film, eigenvalues, map, summary."""
+    from ..recording import write_recording
+
+    return write_recording(path, recording_contents(results))
+
+
+def recording_contents(results: Results) -> RecordingContents:
+    """Everything that the recording shows."""
+    from ..recording import FilmSurface, RecordingContents
+
+    radius = results.scenario.bearing.journal_radius
+    settings = results.scenario.orbit
+    clearance = settings.radial_clearance if settings else results.scenario.radial_clearances[0]
+    shown = [
+        curve
+        for curve in results.curves
+        if np.isclose(curve.choices["radial_clearance"], clearance, rtol=1e-6, atol=0.0)
+    ]
+    paths = [eigenvalue_path(curve, str(curve.choices["thermal_model"])) for curve in shown]
+    return RecordingContents(
+        title=results.scenario.title,
+        summary=markdown_summary(results),
+        orbits=tuple(orbit_tracks(results.orbits)),
+        films=tuple(FilmSurface.from_operating_point(point, radius) for point in results.films),
+        eigenvalues=tuple(path for path in paths if path is not None),
+        maps=(),
+    )
+
+
+def write_figures(results: Results, folder: Path) -> list[Path]:
+    """Write the figures (PNG)."""
+    raise NotImplementedError
+
+
+def markdown_summary(results: Results) -> str:
+    """The closing words as Markdown, for the recording."""
+    facts = summary(results, {})
+    counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
+    lines = [f"Film points: {counted}.", ""]
+    for row in facts["heating"]:
+        lines += [
+            f"## c = {row['radial_clearance'] * 1e6:.4g} um, {row['speed'] * RPM:.0f} rpm",
+            "",
+            "| model | load N | friction N | p max MPa | T max degC | critical mass kg |",
+            "| --- | --- | --- | --- | --- | --- |",
+        ]
+        for model in results.scenario.thermal_models:
+            one = row.get(model.value)
+            if one is not None:
+                mass = one["critical_mass"]
+                critical = one["stability"] or "-" if mass is None else f"{mass:.4g}"
+                lines.append(
+                    f"| {model.value} | {one['load']:.4g} | {one['friction_force']:.4g} | "
+                    f"{one['max_pressure'] / 1e6:.4g} | {one['max_temperature'] - KELVIN:.4g} | "
+                    f"{critical} |"
+                )
+        lines.append("")
+    for row in facts["orbits"]:
+        grows = row["growth_rate"]
+        rate = "" if grows is None else f", growth {grows:.4g} 1/s"
+        lines.append(f"- Orbit {row['thermal_model']}, {row['kind']}: {row['status'].value}{rate}")
+    return "\n".join(lines)
