@@ -7,43 +7,31 @@ state spaces and the control design.
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from .matrices import second_order_state_matrix, state_matrix
-    from .whirl import (
-        WhirlThreshold,
-        WhirlThresholds,
-        flexible_critical_mass,
-        rigid_threshold,
-        rigid_thresholds,
-        routh_coefficients,
-    )
-
-_HOME = {
-    "WhirlThreshold": "whirl",
-    "WhirlThresholds": "whirl",
-    "flexible_critical_mass": "whirl",
-    "rigid_threshold": "whirl",
-    "rigid_thresholds": "whirl",
-    "routh_coefficients": "whirl",
-    "second_order_state_matrix": "matrices",
-    "state_matrix": "matrices",
+_CONTENTS = {
+    "map": ("StabilityMap", "stability_map"),
+    "matrices": ("second_order_state_matrix", "state_matrix"),
+    "rates": ("decay_rate_map", "decay_rates", "eigenvalues"),
+    "rotor": ("GeneralRotor", "load_rotor"),
+    "statespace": ("jeffcott_state_space", "poles", "rotor_state_space", "state_space"),
+    "whirl": (
+        "WhirlThreshold",
+        "WhirlThresholds",
+        "flexible_critical_mass",
+        "rigid_threshold",
+        "rigid_thresholds",
+        "routh_coefficients",
+    ),
 }
-
-__all__ = [
-    "WhirlThreshold",
-    "WhirlThresholds",
-    "flexible_critical_mass",
-    "rigid_threshold",
-    "rigid_thresholds",
-    "routh_coefficients",
-    "second_order_state_matrix",
-    "state_matrix",
-]
+_HOME = {name: module for module, names in _CONTENTS.items() for name in names}
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f".{_HOME[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(_HOME)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import os
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..atomic import replacing
 from ..errors import TableError
 from .variables import TABLE_VERSION
 
@@ -37,20 +35,10 @@ def write(dataset: xr.Dataset, path: str | Path) -> Path:
         if variable.dtype.kind in "fi" and variable.size
     }
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
-        os.close(handle)
-    except OSError as error:
-        raise TableError(f"cannot be written: {error.strerror}", source=target) from error
-    try:
-        dataset.to_netcdf(name, engine="h5netcdf", format="NETCDF4", encoding=encoding)
-        os.chmod(name, 0o644)
-        os.replace(name, target)
+        with replacing(target) as temporary:
+            dataset.to_netcdf(temporary, engine="h5netcdf", format="NETCDF4", encoding=encoding)
     except OSError as error:
         raise TableError(f"cannot be written: {error}", source=target) from error
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(name)
     return target
 
 

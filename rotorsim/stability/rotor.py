@@ -1,0 +1,182 @@
+"""A general rotor given by its matrices, with bearings at some of its nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from .matrices import second_order_state_matrix
+
+if TYPE_CHECKING:
+    from ..table import Coefficients
+
+Array = NDArray[np.float64]
+
+_SYMMETRY = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class GeneralRotor:
+    """M q'' + (D + omega G) q' + K q = F with like bearings at `bearing_nodes`.
+
+    Attributes
+    ----------
+    mass, damping, gyroscopic, stiffness : (n, n) arrays
+        SI. The degrees of freedom are grouped by node: x, y first, then the node's others (for
+        example two slopes). The gyroscopic matrix is multiplied by the shaft speed [rad/s].
+    bearing_nodes : tuple of int
+        Nodes that a bearing carries, from 0.
+    dofs_per_node : int
+        2 or more; 4 for beam elements.
+
+    Raises
+    ------
+    InputError
+        A matrix is not square, not of the mass matrix's size or not finite, the mass matrix is not
+        symmetric and positive, the gyroscopic matrix not skew, or a node is out of range; the
+        message names row and column.
+    """
+
+    mass: Array
+    damping: Array
+    gyroscopic: Array
+    stiffness: Array
+    bearing_nodes: tuple[int, ...]
+    dofs_per_node: int = 4
+    source: str | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "damping", "gyroscopic", "stiffness"):
+            value = np.array(getattr(self, name), dtype=float)
+            value.setflags(write=False)
+            object.__setattr__(self, name, value)
+            self._check_square(name, value)
+        self._check_mass()
+        self._check_mirror("gyroscopic", self.gyroscopic, -1.0, "skew-symmetric")
+        self._check_nodes()
+
+    def _check_square(self, name: str, value: Array) -> None:
+        if value.ndim != 2 or value.shape[0] != value.shape[1] or not value.size:
+            raise InputError(
+                "must be a square matrix", source=self.source, key=name, value=value.shape
+            )
+        if value.shape != self.mass.shape:
+            raise InputError(
+                f"must have the mass matrix's size {self.mass.shape}",
+                source=self.source, key=name, value=value.shape,
+            )  # fmt: skip
+        if not np.all(np.isfinite(value)):
+            row, column = np.argwhere(~np.isfinite(value))[0]
+            raise InputError(
+                "must be finite", source=self.source, key=f"{name}, row {row}, column {column}",
+                value=float(value[row, column]),
+            )  # fmt: skip
+
+    def _check_mass(self) -> None:
+        self._check_mirror("mass", self.mass, 1.0, "symmetric")
+        smallest = np.linalg.eigvalsh(self.mass)[0]
+        if not smallest > 0.0:
+            raise InputError(
+                "must be positive definite (smallest eigenvalue given)",
+                source=self.source, key="mass", value=float(smallest),
+            )  # fmt: skip
+
+    def _check_mirror(self, name: str, value: Array, sign: float, word: str) -> None:
+        off = np.abs(value - sign * value.T)
+        if off.max() > _SYMMETRY * max(np.abs(value).max(), np.finfo(float).tiny):
+            row, column = np.unravel_index(int(off.argmax()), off.shape)
+            raise InputError(
+                f"must be {word}: entry ({column}, {row}) is {value[column, row]:.6g}",
+                source=self.source, key=f"{name}, row {row}, column {column}",
+                value=float(value[row, column]),
+            )  # fmt: skip
+
+    def _check_nodes(self) -> None:
+        n, per_node = self.mass.shape[0], self.dofs_per_node
+        if per_node < 2 or n % per_node:
+            raise InputError(
+                f"must be 2 or more and divide the matrices' size {n}",
+                source=self.source, key="dofs_per_node", value=per_node,
+            )  # fmt: skip
+        nodes = tuple(int(node) for node in self.bearing_nodes)
+        object.__setattr__(self, "bearing_nodes", nodes)
+        for position, node in enumerate(nodes):
+            if not 0 <= node < n // per_node:
+                raise InputError(
+                    f"nodes go from 0 to {n // per_node - 1}",
+                    source=self.source, key=f"bearing_nodes, column {position}", value=node,
+                )  # fmt: skip
+        if not nodes or len(set(nodes)) < len(nodes):
+            raise InputError(
+                "one or more different nodes are needed",
+                source=self.source, key="bearing_nodes", value=nodes,
+            )  # fmt: skip
+
+    def state_matrix(self, coefficients: Coefficients) -> Array:
+        """(2n, 2n) state matrix on (q, q') at the coefficients' speed."""
+        stiffness = self.stiffness.copy()
+        damping = self.damping + coefficients.speed * self.gyroscopic
+        for node in self.bearing_nodes:
+            place = slice(node * self.dofs_per_node, node * self.dofs_per_node + 2)
+            stiffness[place, place] += coefficients.stiffness
+            damping[place, place] += coefficients.damping
+        return second_order_state_matrix(self.mass, damping, stiffness)
+
+
+def load_rotor(path: str | Path) -> GeneralRotor:
+    """Read a rotor from .npz or .mat with M, D, G, K, ``bearing_nodes`` and ``dofs_per_node``.
+
+    D and G may be left out (zero), ``dofs_per_node`` too (4).
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or its matrices do not make a rotor.
+    """
+    source = Path(path)
+    data = _read(source)
+    missing = [name for name in ("M", "K", "bearing_nodes") if name not in data]
+    if missing:
+        raise InputError(f"arrays are missing: {', '.join(missing)}", source=source)
+    try:
+        mass = np.asarray(data["M"], dtype=float)
+        zero = np.zeros_like(mass)
+        damping, gyroscopic, stiffness = (
+            np.asarray(data.get(name, zero), dtype=float) for name in "DGK"
+        )
+        nodes = np.atleast_1d(np.asarray(data["bearing_nodes"], dtype=float)).ravel()
+        per_node = float(np.asarray(data.get("dofs_per_node", 4), dtype=float).ravel()[0])
+    except (TypeError, ValueError, IndexError) as error:
+        raise InputError(f"arrays must be real numbers ({error})", source=source) from error
+    for key, values in (("bearing_nodes", nodes), ("dofs_per_node", np.array([per_node]))):
+        for position, value in enumerate(values):
+            if value != np.round(value):
+                raise InputError(
+                    "must be whole numbers", source=source, key=f"{key}, column {position}",
+                    value=float(value),
+                )  # fmt: skip
+    return GeneralRotor(
+        mass, damping, gyroscopic, stiffness,
+        bearing_nodes=tuple(int(v) for v in nodes), dofs_per_node=int(per_node), source=str(source),
+    )  # fmt: skip
+
+
+def _read(source: Path) -> Mapping[str, Any]:
+    try:
+        if source.suffix == ".npz":
+            # No pickles: a file from elsewhere must not run code.
+            with np.load(source, allow_pickle=False) as file:
+                return {name: file[name] for name in file.files}
+        if source.suffix == ".mat":
+            from scipy.io import loadmat
+
+            return loadmat(source)
+    except Exception as error:  # the readers raise a dozen kinds on damaged files
+        raise InputError(f"cannot be read: {error}", source=source) from error
+    raise InputError("must end in .npz or .mat", source=source)

@@ -1,0 +1,192 @@
+"""State spaces: names, poles, transfer functions, and the matrices that are refused."""
+
+import control
+import numpy as np
+import pytest
+from scipy.io import savemat
+
+from rotorsim.errors import InputError
+from rotorsim.stability.matrices import state_matrix
+from rotorsim.stability.rotor import GeneralRotor, load_rotor
+from rotorsim.stability.statespace import (
+    jeffcott_state_space,
+    poles,
+    rotor_state_space,
+    state_space,
+)
+from rotorsim.stability.whirl import flexible_critical_mass, rigid_threshold
+from rotorsim.table import Coefficients
+
+K = np.array([[2.2e8, 6.6e8], [-0.9e8, 3.0e8]])
+C = np.array([[7e5, 1e5], [1e5, 3e5]])
+FILM = Coefficients(K, C, speed=1200.0)
+
+
+def by_value(values):
+    return np.sort_complex(np.round(np.asarray(values, complex), 6))
+
+
+def test_rigid_rotor_has_named_signals_and_the_right_poles():
+    system = state_space(FILM, mass=900.0)
+    assert isinstance(system, control.StateSpace)
+    assert system.state_labels == ["x", "y", "vx", "vy"]
+    assert system.input_labels == ["force_x", "force_y"]
+    assert system.output_labels == ["displacement_x", "displacement_y"]
+    expected = np.linalg.eigvals(state_matrix(K, C, 900.0))
+    assert np.allclose(by_value(system.poles()), by_value(expected), rtol=1e-12)
+    # Statics and dynamics of the response: the compliance of m s^2 + C s + K.
+    for s in (0.0, 300j, 100.0 + 50j):
+        assert np.allclose(
+            system(s), np.linalg.inv(900.0 * s**2 * np.eye(2) + C * s + K), rtol=1e-9
+        )
+    with pytest.raises(InputError, match="mass"):
+        state_space(FILM, mass=0.0)
+
+
+def test_poles_in_terms_of_frequency_and_damping():
+    film = Coefficients(100.0 * np.eye(2), 2.0 * np.eye(2), 1.0)
+    for pole in poles(state_space(film, mass=1.0)):
+        assert pole.value.real == pytest.approx(-1.0)
+        assert pole.damped_frequency == pytest.approx(np.sqrt(99.0))
+        assert pole.damping_ratio == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize("shaft_stiffness", [1e7, 1e8, 1e9])
+def test_jeffcott_rotor_is_marginal_at_its_closed_form(shaft_stiffness):
+    mass = float(flexible_critical_mass(K, C, shaft_stiffness))
+    whirl = rigid_threshold(K, C, 1200.0).whirl_frequency
+    system = jeffcott_state_space(FILM, mass, shaft_stiffness)
+    assert len(system.state_labels) == 6
+    assert np.abs(system.poles() - 1j * whirl).min() < 1e-9 * whirl
+    rate = [
+        jeffcott_state_space(FILM, f * mass, shaft_stiffness).poles().real.max() for f in (0.9, 1.1)
+    ]
+    assert rate[0] < 0.0 < rate[1]
+
+
+def test_jeffcott_rotor_becomes_the_rigid_rotor_on_a_stiff_shaft():
+    rigid = state_space(FILM, 900.0).poles()
+    stiff = jeffcott_state_space(FILM, 900.0, 1e14).poles()
+    for pole in rigid:
+        assert np.abs(stiff - pole).min() < 1e-4 * abs(pole)
+
+
+def test_jeffcott_rotor_on_stiff_bearings_has_the_shaft_frequency():
+    film = Coefficients(1e14 * np.eye(2), 1e6 * np.eye(2), 1.0)
+    found = jeffcott_state_space(film, 400.0, 1e8).poles()
+    assert np.abs(found - 1j * np.sqrt(1e8 / 400.0)).min() < 1e-2
+
+
+def test_jeffcott_names_and_journal_mass():
+    light, none = (jeffcott_state_space(FILM, 900.0, 1e9, journal_mass=m) for m in (1e-3, 0.0))
+    assert light.state_labels == [
+        *("disc_x", "disc_y", "journal_x", "journal_y"),
+        *("disc_vx", "disc_vy", "journal_vx", "journal_vy"),
+    ]
+    assert none.state_labels == light.state_labels[:6]
+    assert none.input_labels[2:] == ["journal_force_x", "journal_force_y"]
+    for s in (0.0, 400j):
+        assert np.allclose(light(s), none(s), rtol=1e-5, atol=1e-14)
+    assert np.allclose(none(0.0)[2:, 2:], np.linalg.inv(K), rtol=1e-9)
+    singular = Coefficients(K, np.diag([1e5, 0.0]), 1.0)
+    with pytest.raises(InputError, match="journal_mass"):
+        jeffcott_state_space(singular, 900.0, 1e9)
+    with pytest.raises(InputError, match="shaft_stiffness"):
+        jeffcott_state_space(FILM, 900.0, -1.0)
+
+
+def two_node_rotor(**changes):
+    """The Jeffcott rotor as matrices: node 0 the disc, node 1 the journal."""
+    ks = 1e9 * np.eye(2)
+    parts = {
+        "mass": np.diag([900.0, 900.0, 5.0, 5.0]),
+        "damping": np.zeros((4, 4)),
+        "gyroscopic": np.zeros((4, 4)),
+        "stiffness": np.block([[ks, -ks], [-ks, ks]]),
+        "bearing_nodes": (1,),
+        "dofs_per_node": 2,
+    }
+    return GeneralRotor(**(parts | changes))
+
+
+def test_general_rotor_is_the_jeffcott_rotor():
+    system = rotor_state_space(two_node_rotor(), FILM)
+    expected = jeffcott_state_space(FILM, 900.0, 1e9, journal_mass=5.0)
+    assert np.allclose(system.A, expected.A, rtol=1e-12)
+    assert system.state_labels == ["q0", "q1", "q2", "q3", "v0", "v1", "v2", "v3"]
+    assert np.allclose(system(200j), expected(200j), rtol=1e-9)
+
+
+def test_gyroscopic_terms_follow_the_speed():
+    gyro = np.zeros((4, 4))
+    gyro[0, 1], gyro[1, 0] = 3.0, -3.0
+    rotor = two_node_rotor(gyroscopic=gyro)
+    slow = rotor.state_matrix(Coefficients(K, C, 0.0))
+    fast = rotor.state_matrix(Coefficients(K, C, 1000.0))
+    change = fast - slow
+    assert change[4, 5] == pytest.approx(-3.0 * 1000.0 / 900.0)
+    assert np.count_nonzero(change) == 2
+
+
+def asymmetric(matrix, row, column):
+    result = np.array(matrix)
+    result[row, column] += 1.0
+    return result
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"mass": np.ones((4, 3))}, "mass: must be a square"),
+        ({"stiffness": np.eye(6)}, r"stiffness.*size \(4, 4\)"),
+        ({"mass": asymmetric(np.diag([9.0, 9, 5, 5]), 1, 3)}, "mass, row 1, column 3: must be sym"),
+        ({"mass": np.diag([9.0, 9.0, 0.0, 5.0])}, "positive definite"),
+        ({"damping": np.diag([1.0, np.nan, 1, 1])}, "damping, row 1, column 1: must be finite"),
+        ({"gyroscopic": np.eye(4)}, "gyroscopic, row 0, column 0: must be skew"),
+        ({"bearing_nodes": (0, 2)}, "bearing_nodes, column 1: nodes go from 0 to 1"),
+        ({"bearing_nodes": (-1,)}, "nodes go from 0 to 1"),
+        ({"bearing_nodes": ()}, "one or more"),
+        ({"bearing_nodes": (1, 1)}, "different nodes"),
+        ({"dofs_per_node": 3}, "dofs_per_node"),
+    ],
+)
+def test_bad_matrices_are_refused_with_their_place(changes, message):
+    with pytest.raises(InputError, match=message):
+        two_node_rotor(**changes)
+
+
+@pytest.mark.parametrize("kind", ["npz", "mat"])
+def test_rotor_files(tmp_path, kind):
+    rotor = two_node_rotor()
+    arrays = {"M": rotor.mass, "K": rotor.stiffness, "bearing_nodes": [1], "dofs_per_node": 2}
+    path = tmp_path / f"rotor.{kind}"
+
+    def write(**data):
+        np.savez(path, **data) if kind == "npz" else savemat(path, data)
+
+    write(**arrays)
+    found = load_rotor(path)
+    assert np.array_equal(found.state_matrix(FILM), rotor.state_matrix(FILM))
+    write(**(arrays | {"bearing_nodes": [7]}))
+    with pytest.raises(InputError, match=rf"rotor\.{kind}: bearing_nodes, column 0"):
+        load_rotor(path)
+    write(**(arrays | {"bearing_nodes": [0.5]}))
+    with pytest.raises(InputError, match="whole numbers"):
+        load_rotor(path)
+    write(M=rotor.mass)
+    with pytest.raises(InputError, match="missing: K, bearing_nodes"):
+        load_rotor(path)
+    path.write_bytes(b"not a rotor")
+    with pytest.raises(InputError, match="cannot be read"):
+        load_rotor(path)
+
+
+def test_pickled_arrays_and_other_files_are_refused(tmp_path):
+    path = tmp_path / "rotor.npz"
+    np.savez(path, M=np.array([{"a": 1}], dtype=object), K=1, bearing_nodes=0)
+    with pytest.raises(InputError, match="cannot be read"):
+        load_rotor(path)
+    with pytest.raises(InputError, match=r"\.npz or \.mat"):
+        load_rotor(tmp_path / "rotor.txt")
+    with pytest.raises(InputError, match="cannot be read"):
+        load_rotor(tmp_path / "none.npz")
