@@ -1,0 +1,41 @@
+"""Recordings for the rerun viewer: the only part that imports rerun, and only when it is used."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .contents import (
+    CascadePicture,
+    EigenvaluePath,
+    FilmSurface,
+    MapPicture,
+    OrbitTrack,
+    RecordingContents,
+    Verdict,
+    classify,
+)
+from .viewer import ANALYTICS_NOTE, ViewerLaunch, open_viewer
+
+__all__ = [
+    "ANALYTICS_NOTE",
+    "CascadePicture",
+    "EigenvaluePath",
+    "FilmSurface",
+    "MapPicture",
+    "OrbitTrack",
+    "RecordingContents",
+    "Verdict",
+    "ViewerLaunch",
+    "classify",
+    "open_viewer",
+    "write_recording",
+]
+
+
+def write_recording(
+    path: str | Path, contents: RecordingContents, *, page: str = "Overview"
+) -> Path:
+    """Write a recording; see `rotorsim.recording.write.write_recording`."""
+    from .write import write_recording as write
+
+    return write(path, contents, page=page)

@@ -1,0 +1,160 @@
+"""How a recording opens: pages of views, saved inside the file."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import rerun.blueprint as rrb
+
+from . import film_view, map_view, series_view
+from .contents import RecordingContents
+from .eigenvalue_view import eigenvalue_view
+from .orbit_view import orbit_view, zoom_reach
+from .quantities import film_names, frames_of, quantities, shows
+from .timeline import SPEED, TIME
+
+Part: TypeAlias = rrb.View | rrb.Container
+REVOLUTIONS_PER_SECOND = 3.0
+"""Turns of the shaft in one second of watching."""
+PAGES = ("Overview", "Orbits", "Film", "Stability", "Time series")
+
+
+def layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint:
+    """Blueprint of a recording.
+
+    Parameters
+    ----------
+    contents : RecordingContents
+    page : str
+        One of `PAGES`: the one shown first.
+    """
+    pages = [
+        built
+        for built in (
+            _overview(contents),
+            _orbits(contents),
+            _film(contents),
+            _stability(contents),
+            _time_series(contents),
+        )
+        if built is not None
+    ]
+    names = [str(built.name) for built in pages]
+    return rrb.Blueprint(
+        rrb.Tabs(*pages, active_tab=names.index(page) if page in names else 0),
+        rrb.TimePanel(
+            state="collapsed",
+            timeline=TIME if contents.orbits else SPEED,
+            playback_speed=_playback_speed(contents),
+            loop_mode="all",
+            play_state="playing",
+        ),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        auto_layout=False,
+        auto_views=False,
+    )
+
+
+def _playback_speed(contents: RecordingContents) -> float | None:
+    if not contents.orbits:
+        return None
+    fastest = max(float(np.abs(track.speed).max()) for track in contents.orbits)
+    return float(f"{REVOLUTIONS_PER_SECOND * 2.0 * np.pi / max(fastest, 1e-9):.1g}")
+
+
+def _summary_view(contents: RecordingContents) -> list[Part]:
+    return (
+        [rrb.TextDocumentView(origin="/summary", name="What is seen")] if contents.summary else []
+    )
+
+
+def _orbit_views(contents: RecordingContents) -> list[Part]:
+    return [orbit_view(track) for track in contents.orbits]
+
+
+def _close_ups(contents: RecordingContents) -> list[Part]:
+    reach = zoom_reach(contents.orbits)
+    return [orbit_view(track, zoom=reach) for track in contents.orbits]
+
+
+def _film_views(contents: RecordingContents, flat: bool) -> list[Part]:
+    films = contents.films
+    if not films:
+        return []
+    make = film_view.unwrapped_view if flat else film_view.film_view
+    views: list[Part] = []
+    for name in film_names(films):
+        frames = frames_of(films, name)
+        for quantity in quantities(films):
+            if shows(quantity, frames):
+                views.append(make(name, quantity, frames[0]))
+    return views
+
+
+def _map_views(contents: RecordingContents) -> list[Part]:
+    return [map_view.map_view(picture, i) for i, picture in enumerate(contents.maps)]
+
+
+def _overview(contents: RecordingContents) -> Part | None:
+    left: list[Part] = []
+    shares: list[float] = []
+    if contents.orbits:
+        left = [
+            rrb.Horizontal(*_orbit_views(contents)),
+            series_view.series_view(series_view.ECCENTRICITY, contents.orbits),
+        ]
+        shares = [2.2, 1.0]
+    middle: list[Part] = _film_views(contents, flat=False)[-2:]
+    stability = _map_views(contents)[:1]
+    if contents.eigenvalues:
+        stability.append(eigenvalue_view())
+    right: list[Part] = [*_summary_view(contents)]
+    if stability:
+        right.append(rrb.Tabs(*stability) if len(stability) > 1 else stability[0])
+    columns: list[Part] = []
+    widths: list[float] = []
+    if left:
+        columns.append(rrb.Vertical(*left, row_shares=shares))
+        widths.append(1.8)
+    for parts, width in ((middle, 0.95), (right, 1.25)):
+        if parts:
+            columns.append(rrb.Vertical(*parts, row_shares=[1.0] * len(parts)))
+            widths.append(width)
+    return rrb.Horizontal(*columns, column_shares=widths, name="Overview") if columns else None
+
+
+def _orbits(contents: RecordingContents) -> Part | None:
+    if not contents.orbits:
+        return None
+    return rrb.Vertical(
+        rrb.Horizontal(*_orbit_views(contents), *_close_ups(contents)),
+        series_view.series_view(series_view.DISPLACEMENT, contents.orbits),
+        row_shares=[1.6, 1.0],
+        name="Orbits",
+    )
+
+
+def _film(contents: RecordingContents) -> Part | None:
+    views = [*_film_views(contents, flat=False), *_film_views(contents, flat=True)]
+    return rrb.Grid(*views, grid_columns=len(views) // 2, name="Film") if views else None
+
+
+def _stability(contents: RecordingContents) -> Part | None:
+    parts: list[Part] = []
+    if contents.maps:
+        parts.append(rrb.Tabs(*_map_views(contents)))
+    if contents.eigenvalues:
+        parts.append(eigenvalue_view())
+    if contents.cascades:
+        views = [map_view.cascade_view(p, i) for i, p in enumerate(contents.cascades)]
+        parts.append(rrb.Tabs(*views))
+    return rrb.Horizontal(*parts, name="Stability") if parts else None
+
+
+def _time_series(contents: RecordingContents) -> Part | None:
+    if not contents.orbits:
+        return None
+    views = [series_view.series_view(series, contents.orbits) for series in series_view.ALL_SERIES]
+    return rrb.Vertical(*views, name="Time series")

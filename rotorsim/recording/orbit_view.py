@@ -1,0 +1,216 @@
+"""The orbit in the clearance circle: whole path, fading trail, journal, film force.
+
+Coordinates are micrometres: x to the right, y upwards (negated for the viewer).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+from numpy.typing import ArrayLike, NDArray
+
+from .chart import log_labels
+from .colormaps import FAINT, LINE, TEXT, model_colour
+from .contents import OrbitTrack
+from .timeline import REVOLUTIONS, SAMPLE_LIMIT, TIME, send_track, thin
+
+MICRO = 1e6
+PATH_LIMIT = 6_000
+TRAIL_LIMIT = 50_000
+TRAIL_REVOLUTIONS = 3.0
+FORCE_LENGTH = 0.45
+"""Arrow of the median force, in clearances; longer ones stop at twice that."""
+
+
+def orbit_entity(name: str) -> str:
+    """Where a track's 2-D picture lives."""
+    return f"orbit/{name}"
+
+
+def view_points(x: ArrayLike, y: ArrayLike) -> NDArray[np.float32]:
+    """Micrometres in the viewer's axes, (n, 2)."""
+    return np.stack([np.asarray(x) * MICRO, -np.asarray(y) * MICRO], axis=-1).astype(np.float32)
+
+
+def log_orbit(stream: rr.RecordingStream, track: OrbitTrack) -> None:
+    """Write one track's orbit picture."""
+    root = orbit_entity(track.name)
+    _log_surroundings(stream, root, track)
+    points = view_points(track.x, track.y)
+    colour = model_colour(track.name)
+    stream.log(
+        f"{root}/path_um",
+        rr.LineStrips2D(
+            [points[thin(len(points), PATH_LIMIT)]],
+            radii=rr.Radius.ui_points(0.5),
+            colors=tuple(c // 2 for c in colour),
+        ),
+        static=True,
+    )
+    _send_trail(stream, f"{root}/trail_um", track, points)
+    _send_journal(stream, f"{root}/journal_um", track, points)
+    if track.force is not None:
+        _send_force(stream, f"{root}/film_force_N", track, points)
+
+
+def zoom_reach(tracks: Sequence[OrbitTrack]) -> float:
+    """Half-width [m] of the close-up that holds the smallest of these motions."""
+    sizes = []
+    for track in tracks:
+        x0, y0 = middle_of(track)
+        sizes.append(float(np.hypot(track.x - x0, track.y - y0).max()))
+    return max(1.3 * min(sizes), 1e-3 * tracks[0].radial_clearance)
+
+
+def middle_of(track: OrbitTrack) -> tuple[float, float]:
+    """Give the static position, or the mean one where that is not known [m]."""
+    if track.equilibrium is not None:
+        return float(track.equilibrium[0]), float(track.equilibrium[1])
+    return float(track.x.mean()), float(track.y.mean())
+
+
+def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DView:
+    """View of one track with the trail of the last turns.
+
+    Parameters
+    ----------
+    track : OrbitTrack
+    zoom : float, optional
+        Half-width of a close-up about the static position [m]; else the whole clearance circle.
+    """
+    root = orbit_entity(track.name)
+    reach = (1.25 * track.radial_clearance if zoom is None else zoom) * MICRO
+    x0, y0 = (0.0, 0.0) if zoom is None else middle_of(track)
+    centre = view_points(x0, y0).astype(float)
+    # The force's scale belongs to the whole circle.
+    hidden = [] if zoom is None else [f"- /{root}/film_force_N"]
+    title = "Orbit" if zoom is None else f"Close-up, {2.0 * reach:.2g} µm wide"
+    turns = abs(track.revolutions[-1] - track.revolutions[0])
+    seconds = float(track.time[-1] - track.time[0]) * min(1.0, TRAIL_REVOLUTIONS / max(turns, 1e-9))
+    now = rrb.TimeRangeBoundary.cursor_relative
+    trail = rrb.VisibleTimeRanges(
+        [
+            rr.VisibleTimeRange(TIME, start=now(seconds=-seconds), end=now()),
+            rr.VisibleTimeRange(
+                REVOLUTIONS, start=now(seq=-round(1000 * TRAIL_REVOLUTIONS)), end=now()
+            ),
+        ]
+    )
+    return rrb.Spatial2DView(
+        origin=f"/{root}",
+        name=f"{title}: {track.heading}",
+        visual_bounds=rrb.VisualBounds2D(
+            x_range=[centre[0] - reach, centre[0] + reach],
+            y_range=[centre[1] - reach, centre[1] + reach],
+        ),
+        contents=["$origin/**", *hidden],
+        overrides={f"/{root}/trail_um": trail},
+    )
+
+
+def _log_surroundings(stream: rr.RecordingStream, root: str, track: OrbitTrack) -> None:
+    clearance = track.radial_clearance * MICRO
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)
+    circle = clearance * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+    arrow = clearance * 1.1
+    stream.log(
+        f"{root}/clearance_circle_um",
+        rr.LineStrips2D([circle], radii=rr.Radius.ui_points(1.2), colors=TEXT),
+        static=True,
+    )
+    cross = [[[-clearance, 0], [clearance, 0]], [[0, -clearance], [0, clearance]]]
+    stream.log(
+        f"{root}/axes",
+        rr.LineStrips2D(cross, radii=rr.Radius.ui_points(0.4), colors=FAINT),
+        static=True,
+    )
+    arc = np.radians(np.linspace(35.0, 58.0, 24))
+    turning = 1.12 * clearance * np.stack([np.cos(arc), -np.sin(arc)], axis=-1)
+    head = turning[-1] + 0.06 * clearance * np.array([[0.95, -0.3], [0.0, 0.0], [0.25, 0.95]])
+    stream.log(
+        f"{root}/rotation",
+        rr.LineStrips2D([turning, head], radii=rr.Radius.ui_points(1.0), colors=LINE),
+        static=True,
+    )
+    log_labels(
+        stream,
+        f"{root}/labels",
+        [[arrow, -0.04 * clearance], [0, -1.2 * clearance], [0, 1.06 * clearance]],
+        ["x, load", "y", f"clearance circle, c = {clearance:.4g} µm"],
+        LINE,
+    )
+    if track.equilibrium is not None:
+        place = view_points(track.equilibrium[0], track.equilibrium[1])
+        stream.log(
+            f"{root}/equilibrium_um",
+            rr.Points2D([place], radii=rr.Radius.ui_points(2.5), colors=LINE, draw_order=45.0),
+            static=True,
+        )
+
+
+def _bright(colour: tuple[int, int, int]) -> tuple[int, int, int]:
+    red, green, blue = (c + (255 - c) // 2 for c in colour)
+    return red, green, blue
+
+
+def _send_trail(
+    stream: rr.RecordingStream, entity: str, track: OrbitTrack, points: NDArray[np.float32]
+) -> None:
+    # One short segment per row: the view's time window joins the last turns into the trail.
+    rows = thin(len(points), TRAIL_LIMIT)
+    stream.log(
+        entity,
+        rr.LineStrips2D.from_fields(
+            radii=rr.Radius.ui_points(1.6), colors=_bright(model_colour(track.name))
+        ),
+        static=True,
+    )
+
+    def segments(part: NDArray[np.intp]) -> rr.ComponentColumnList:
+        first = rows[np.maximum(np.searchsorted(rows, part) - 1, 0)]
+        return rr.LineStrips2D.columns(strips=np.stack([points[first], points[part]], axis=1))
+
+    send_track(stream, entity, track, rows, segments)
+
+
+def _send_journal(
+    stream: rr.RecordingStream, entity: str, track: OrbitTrack, points: NDArray[np.float32]
+) -> None:
+    stream.log(
+        entity,
+        rr.Points2D.from_fields(
+            radii=rr.Radius.ui_points(5.0), colors=(255, 255, 255), draw_order=50.0
+        ),
+        static=True,
+    )
+    rows = thin(len(points), SAMPLE_LIMIT)
+    send_track(
+        stream, entity, track, rows, lambda part: rr.Points2D.columns(positions=points[part])
+    )
+
+
+def _send_force(
+    stream: rr.RecordingStream, entity: str, track: OrbitTrack, points: NDArray[np.float32]
+) -> None:
+    force = np.asarray(track.force)
+    magnitude = np.hypot(force[:, 0], force[:, 1])
+    # The middle of the record sets the scale: at touch-down the force grows without bound.
+    scale = FORCE_LENGTH * track.radial_clearance * MICRO / max(float(np.median(magnitude)), 1e-12)
+    stream.log(
+        entity,
+        rr.Arrows2D.from_fields(radii=rr.Radius.ui_points(1.2), colors=(0, 158, 115)),
+        static=True,
+    )
+    rows = thin(len(points), TRAIL_LIMIT)
+    shown = (
+        force * np.minimum(1.0, 2.0 * np.median(magnitude) / np.maximum(magnitude, 1e-12))[:, None]
+    )
+    arrows = (shown * (scale, -scale)).astype(np.float32)
+
+    def columns(part: NDArray[np.intp]) -> rr.ComponentColumnList:
+        return rr.Arrows2D.columns(vectors=arrows[part], origins=points[part])
+
+    send_track(stream, entity, track, rows, columns)

@@ -1,0 +1,129 @@
+"""Timelines, and how samples reach the file: columns of numpy arrays in chunks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import rerun as rr
+from numpy.typing import ArrayLike, NDArray
+
+from .contents import OrbitTrack
+
+TIME = "time"
+"""Seconds of the simulation."""
+REVOLUTIONS = "milli-revolutions"
+"""Thousandths of a turn of the shaft: the viewer's sequences are whole numbers."""
+SPEED = "speed_rpm"
+"""Shaft speed in whole rpm: frames of the film and of the eigenvalues."""
+
+RPM = 60.0 / (2.0 * np.pi)
+CHUNK_ROWS = 32_768
+SAMPLE_LIMIT = 1_000_000
+"""More samples than this of one track are thinned to every second, third, ... one."""
+
+Indices = NDArray[np.intp]
+Columns = Callable[[Indices], Iterable[Any]]
+
+
+def time_index(seconds: ArrayLike) -> rr.TimeColumn:
+    """Column of times; rounded, since the library cuts to the nanosecond below."""
+    nanoseconds = np.round(np.atleast_1d(np.asarray(seconds, dtype=float)) * 1e9)
+    return rr.TimeColumn(TIME, duration=nanoseconds.astype("timedelta64[ns]"))
+
+
+def revolution_index(revolutions: ArrayLike) -> rr.TimeColumn:
+    """Column of thousandths of a turn."""
+    thousandths = np.round(np.atleast_1d(np.asarray(revolutions, dtype=float)) * 1000.0)
+    return rr.TimeColumn(REVOLUTIONS, sequence=thousandths.astype(np.int64))
+
+
+def speed_index(speed: ArrayLike) -> rr.TimeColumn:
+    """Column of whole rpm from rad/s."""
+    rpm = np.round(np.atleast_1d(np.asarray(speed, dtype=float)) * RPM)
+    return rr.TimeColumn(SPEED, sequence=rpm.astype(np.int64))
+
+
+def track_index(track: OrbitTrack, rows: Indices) -> list[rr.TimeColumn]:
+    """Both timelines of a track at some of its samples."""
+    return [time_index(track.time[rows]), revolution_index(track.revolutions[rows])]
+
+
+def thin(count: int, limit: int) -> Indices:
+    """Every k-th of `count` samples, at most about `limit`, with the last one always kept."""
+    step = max(1, -(-count // max(1, limit)))
+    rows = np.arange(0, count, step)
+    return rows if rows[-1] == count - 1 else np.append(rows, count - 1)
+
+
+def chunks(rows: Indices) -> Iterator[Indices]:
+    """Parts of at most `CHUNK_ROWS`."""
+    for start in range(0, rows.size, CHUNK_ROWS):
+        yield rows[start : start + CHUNK_ROWS]
+
+
+def send_track(
+    stream: rr.RecordingStream, entity: str, track: OrbitTrack, rows: Indices, columns: Columns
+) -> None:
+    """Send samples `rows` of a track on both timelines; `columns` makes a chunk's components."""
+    for part in chunks(rows):
+        stream.send_columns(entity, track_index(track, part), columns(part))
+
+
+def frame_rows(track: OrbitTrack, frame_speeds: ArrayLike) -> tuple[Indices, Indices]:
+    """When a run passes from one tabulated speed to the next.
+
+    Parameters
+    ----------
+    track : OrbitTrack
+    frame_speeds : array_like (k,)
+        Tabulated speeds [rad/s].
+
+    Returns
+    -------
+    rows : (j,) array
+        Samples at which another frame becomes the nearest; the first is 0.
+    frames : (j,) array
+        The frame that is nearest from there on.
+    """
+    known = np.asarray(frame_speeds, dtype=float)
+    candidates = thin(track.time.size, 5_000)
+    nearest = np.abs(track.speed[candidates, None] - known).argmin(axis=1)
+    changes = np.concatenate([[0], np.flatnonzero(np.diff(nearest)) + 1])
+    return candidates[changes], nearest[changes]
+
+
+def indices_of_frames(
+    tracks: Sequence[OrbitTrack], name: str, frame_speeds: ArrayLike
+) -> list[tuple[list[rr.TimeColumn], Indices]]:
+    """Where frames over speed stand on every timeline.
+
+    Parameters
+    ----------
+    tracks : sequence of OrbitTrack
+        The track called `name` places the frames in time; else the first one; else none.
+    name : str
+    frame_speeds : array_like (k,)
+        Ascending [rad/s].
+
+    Returns
+    -------
+    list of (index columns, frame numbers)
+        One entry to send per set of timelines.
+    """
+    known = np.asarray(frame_speeds, dtype=float)
+    places = [([speed_index(known)], np.arange(known.size))]
+    track = pick_track(tracks, name)
+    if track is not None:
+        rows, frames = frame_rows(track, known)
+        places.append((track_index(track, rows), frames))
+    return places
+
+
+def pick_track(tracks: Sequence[OrbitTrack], name: str) -> OrbitTrack | None:
+    """Track of that name, else the first, else None."""
+    for track in tracks:
+        if track.name == name:
+            return track
+    return tracks[0] if tracks else None

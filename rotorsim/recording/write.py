@@ -1,0 +1,93 @@
+"""From contents to a file that opens laid out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import rerun as rr
+
+from rotorsim.atomic import replacing
+
+from .contents import RecordingContents
+from .eigenvalue_view import log_eigenvalues
+from .film_view import log_films
+from .layout import layout
+from .map_view import log_cascade, log_map
+from .orbit_view import log_orbit
+from .series_view import log_series
+from .timeline import SAMPLE_LIMIT
+
+APPLICATION = "rotorsim"
+
+
+def write_recording(
+    path: str | Path, contents: RecordingContents, *, page: str = "Overview"
+) -> Path:
+    """Write a recording for the rerun viewer.
+
+    Parameters
+    ----------
+    path : str or Path
+        Usually ``logs/NAME.rrd``; missing folders are made. An existing file is replaced only
+        once the new one is whole.
+    contents : RecordingContents
+    page : str
+        The page shown first, one of `rotorsim.recording.layout.PAGES`.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Notes
+    -----
+    Nothing is sent anywhere: the stream writes to the file alone. Two identical runs give files
+    that differ in their time stamps only (``rerun rrd compare --unordered`` says so).
+    """
+    target = Path(path)
+    # A fresh identity each time: a viewer that still shows the old file would mix the two.
+    stream = rr.RecordingStream(APPLICATION, send_properties=False)
+    with replacing(target) as temporary:
+        with stream:
+            stream.save(temporary, default_blueprint=layout(contents, page))
+            log_contents(stream, contents)
+        stream.disconnect()
+    return target
+
+
+def log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> None:
+    """Write everything to an open stream (a file's, or a running viewer's)."""
+    if contents.summary:
+        text = f"# {contents.title}\n\n{contents.summary}{_notes(contents)}"
+        document = rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN)
+        stream.log("summary", document, static=True)
+    for track in contents.orbits:
+        log_orbit(stream, track)
+        log_series(stream, track)
+    if contents.films:
+        log_films(stream, contents.films, contents.orbits)
+    if contents.eigenvalues:
+        log_eigenvalues(stream, contents.eigenvalues, contents.orbits)
+    for number, picture in enumerate(contents.maps):
+        log_map(stream, picture, number, contents.orbits)
+    for number, cascade in enumerate(contents.cascades):
+        log_cascade(stream, cascade, number)
+
+
+def _notes(contents: RecordingContents) -> str:
+    lines = [
+        "",
+        "## How to read it",
+        "- Timelines: `time` [s], `milli-revolutions` (1000 is one turn of the shaft) and"
+        " `speed_rpm` (film and eigenvalues from speed to speed).",
+        "- Orbits: x along the load, y 90 degrees ahead in the direction of rotation"
+        " (counter-clockwise); the circle is the radial clearance.",
+        "- Bearing: true proportions but for the clearance, whose exaggeration is written there;"
+        " the film's height is its pressure or temperature.",
+    ]
+    thinned = [t.heading for t in contents.orbits if t.time.size > SAMPLE_LIMIT]
+    if thinned:
+        lines.append(
+            f"- More than {SAMPLE_LIMIT:,} samples, thinned evenly here: {', '.join(thinned)}."
+        )
+    return "\n".join(["", *lines])
