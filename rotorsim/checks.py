@@ -86,35 +86,24 @@ def derived_numbers(case: Case, speed: float) -> DerivedNumbers:
     bearing, oil = case.bearing, case.lubricant
     radius, clearance = bearing.journal_radius, bearing.radial_clearance
     temperature = case.thermal.supply_temperature
-    mu = float(oil.viscosity(temperature))
-    surface_speed = speed * radius
-    reynolds = oil.density * surface_speed * clearance / mu
-    heat_capacity = oil.density * oil.specific_heat
+    mu, k = float(oil.viscosity(temperature)), oil.thermal_conductivity
+    rho_cp = oil.density * oil.specific_heat
+    u = speed * radius
+    reynolds = oil.density * u * clearance / mu
     unit_load = sommerfeld = None
     if isinstance(case.target, LoadTarget):
         unit_load = case.target.load / (bearing.length * bearing.diameter)
         sommerfeld = mu * speed / (2.0 * math.pi) / unit_load * (radius / clearance) ** 2
     return DerivedNumbers(
-        surface_speed=surface_speed,
+        surface_speed=u,
         viscosity=mu,
         unit_load=unit_load,
         sommerfeld_number=sommerfeld,
         reynolds_number=reynolds,
         taylor_number=reynolds * math.sqrt(clearance / radius),
-        peclet_number=heat_capacity
-        * surface_speed
-        * clearance**2
-        / (oil.thermal_conductivity * radius),
-        nahme_number=temperature_coefficient(case, temperature)
-        * mu
-        * surface_speed**2
-        / oil.thermal_conductivity,
-        adiabatic_temperature_rise=4.0
-        * math.pi
-        * mu
-        * speed
-        * radius**2
-        / (heat_capacity * clearance**2),
+        peclet_number=rho_cp * u * clearance**2 / (k * radius),
+        nahme_number=temperature_coefficient(case, temperature) * mu * u**2 / k,
+        adiabatic_temperature_rise=4.0 * math.pi * mu * u * radius / (rho_cp * clearance**2),
     )
 
 

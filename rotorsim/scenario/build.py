@@ -26,7 +26,14 @@ from ..model import (
     ThermalSettings,
 )
 from ..model.rotor import RigidRotor
-from .geometry import bearing_arcs, bearing_grooves, check_arcs, check_grooves, check_tilt
+from .geometry import (
+    bearing_arcs,
+    bearing_grooves,
+    check_arcs,
+    check_eccentricity,
+    check_grooves,
+    check_tilt,
+)
 from .oil import varies_with_temperature
 from .schema import (
     BearingTable,
@@ -95,6 +102,7 @@ def bearings(
         made.append(bearing)
     check_grooves(made[0], mesh)
     check_arcs(made[0])
+    check_eccentricity(made[0], eccentricity_ratio)
     return tuple(made)
 
 

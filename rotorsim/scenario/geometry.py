@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+import numpy as np
+
 from ..errors import InputError
 from ..model import Arc, Bearing, Groove, MeshSize
 from .schema import BearingTable
@@ -191,4 +193,29 @@ def check_tilt(bearing: Bearing, eccentricity_ratio: float | None) -> None:
             f"{2.0 * bearing.radial_clearance / bearing.length:.4g} rad, less what the "
             "eccentricity takes",
             key="bearing.tilt",
+        )
+
+
+def reach(bearing: Bearing) -> float:
+    """Largest eccentricity ratio that any position within the lobes has (1 for a plain bore)."""
+    theta = np.linspace(0.0, FULL_TURN, 720, endpoint=False)
+    bore = np.ones_like(theta)
+    for arc in bearing.arcs:
+        inside = (theta - arc.start) % FULL_TURN < arc.end - arc.start
+        bore = np.where(inside, 1.0 - arc.preload * np.cos(theta - arc.preload_angle), bore)
+    towards = np.cos(theta[:, None] - theta)  # direction of the journal, angle around the bore
+    room = np.where(towards > 0.0, bore / np.where(towards > 0.0, towards, 1.0), np.inf)
+    return float(room.min(axis=1).max())
+
+
+def check_eccentricity(bearing: Bearing, eccentricity_ratio: float | None) -> None:
+    """Refuse an eccentricity ratio at which the journal touches a lobe wherever it stands."""
+    if eccentricity_ratio is None or all(arc.preload == 0.0 for arc in bearing.arcs):
+        return
+    limit = reach(bearing)
+    if eccentricity_ratio >= limit:
+        raise InputError(
+            "the journal touches a lobe in every direction: with these lobes it must be below "
+            f"{limit:.4g} (it counts in lobe clearances)",
+            key="operating.eccentricity_ratio",
         )

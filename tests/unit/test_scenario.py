@@ -242,6 +242,15 @@ def test_profile_equals_its_arcs_written_out() -> None:
         assert dataclasses.astuple(one) == pytest.approx(dataclasses.astuple(other))
 
 
+def test_eccentricity_beyond_the_reach_of_the_lobes() -> None:
+    # Two lobe circles of radius c, centred m c to either side, meet at c sqrt(1 - m^2).
+    text = MINIMAL.replace("[bearing]", '[bearing]\nprofile = "elliptical"\npreload = 0.5')
+    text = text.replace('load = "10 kN"', "eccentricity_ratio = 0.86")
+    assert Scenario.from_text(text).target == EccentricityTarget(0.86)
+    with pytest.raises(ScenarioError, match=r"operating\.eccentricity_ratio: .* below 0\.866 "):
+        Scenario.from_text(text.replace("0.86", "0.87"))
+
+
 def test_a_groove_may_fill_the_opening_between_arcs() -> None:
     arcs = "".join(
         f'[[bearing.arc]]\nstart = "{start} deg"\nend = "{start + 160} deg"\npreload = 0.3\n'
@@ -377,3 +386,16 @@ def test_masses_of_the_map() -> None:
         stability = Scenario.from_text(MINIMAL + f"[stability]\nmass = {entry}\n").stability
         assert stability is not None
         assert stability.mass == masses
+
+
+def test_an_error_travels_between_processes() -> None:
+    with pytest.raises(ScenarioError) as caught:
+        Scenario.from_text("[bearing]\n", "a.toml")
+    error = pickle.loads(pickle.dumps(caught.value))
+    assert (error.key, error.source, error.others) == (
+        caught.value.key,
+        "a.toml",
+        caught.value.others,
+    )
+    assert str(error) == str(caught.value)
+    assert len(error.others) > 2
