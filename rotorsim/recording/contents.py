@@ -71,6 +71,11 @@ class OrbitTrack:
         return self.title or model_label(self.name)
 
     @property
+    def constant_speed(self) -> bool:
+        """Whether the speed stays within a thousandth."""
+        return bool(np.ptp(self.speed) <= 1e-3 * np.abs(self.speed).max())
+
+    @property
     def revolutions(self) -> Array:
         """Turns of the shaft since the angle's zero [rev]."""
         return self.angle / (2.0 * np.pi)
@@ -238,34 +243,29 @@ class MapPicture:
         Ascending [rad/s].
     mass : (m,) array
         Ascending, per bearing [kg].
-    isothermal_decay : (n, m) array
-        Decay rate of the slowest motion: positive stable, NaN unknown [1/s].
-    heated_decay : (n, m) array, optional
-        The same with heating; where absent, the map knows stable and unstable only.
+    verdict : (n, m) array of `Verdict` values
+        See `classify`.
     rotor_mass : float, optional
         Mass of the simulated rotor [kg]: the moving point's height.
+    isothermal_decay, heated_decay : (n, m) arrays, optional
+        Decay rates behind the verdict, positive where stable, NaN where unknown [1/s]. With both
+        the borders are drawn smooth, between the cells.
     """
 
     title: str
     speed: Array
     mass: Array
-    isothermal_decay: Array
-    heated_decay: Array | None = None
+    verdict: NDArray[np.uint8]
     rotor_mass: float | None = None
-
-    @property
-    def verdict(self) -> NDArray[np.uint8]:
-        """`Verdict` of every cell, (n, m)."""
-        return classify(self.isothermal_decay, self._heated)
-
-    @property
-    def _heated(self) -> Array:
-        return self.isothermal_decay if self.heated_decay is None else self.heated_decay
+    isothermal_decay: Array | None = None
+    heated_decay: Array | None = None
 
     def verdict_at(self, speed: Array, mass: Array) -> NDArray[np.uint8]:
-        """Verdict on a finer grid (len(speed), len(mass)) from interpolated decay rates."""
+        """Verdict on a finer grid, (len(speed), len(mass))."""
+        if self.isothermal_decay is None or self.heated_decay is None:
+            return self.verdict[np.ix_(nearest(self.speed, speed), nearest(self.mass, mass))]
         cold = _bilinear(self.speed, self.mass, self.isothermal_decay, speed, mass)
-        hot = _bilinear(self.speed, self.mass, self._heated, speed, mass)
+        hot = _bilinear(self.speed, self.mass, self.heated_decay, speed, mass)
         return classify(cold, hot)
 
 
@@ -306,6 +306,11 @@ class RecordingContents:
 def model_label(name: str) -> str:
     """Write a model's name for titles and legends."""
     return {"thd": "THD"}.get(name, name)
+
+
+def nearest(known: Array, wanted: Array) -> NDArray[np.intp]:
+    """Index of the nearest of ascending values."""
+    return np.searchsorted(0.5 * (known[1:] + known[:-1]), wanted)
 
 
 def _bilinear(x: Array, y: Array, values: Array, new_x: Array, new_y: Array) -> Array:

@@ -12,11 +12,9 @@ from numpy.typing import NDArray
 from .chart import HEIGHT, Chart, chart_bounds, log_labels, tick_text
 from .colormaps import ALARM, model_colour
 from .contents import EigenvaluePath, OrbitTrack, model_label
-from .timeline import RPM, pick_track, speed_index, thin, track_index
+from .timeline import RPM, distinct_speeds, speed_index, track_index, tracks_of
 
 ENTITY = "eigenvalues"
-STEADY = 1e-3
-MOVING_LIMIT = 1_000
 
 
 def log_eigenvalues(
@@ -32,7 +30,7 @@ def log_eigenvalues(
         _log_branches(stream, chart, path)
         _log_threshold(stream, chart, path)
         _log_key(stream, path, number)
-        _send_moving(stream, chart, path, pick_track(tracks, path.name))
+        _send_moving(stream, chart, path, tracks_of(tracks, path.name))
 
 
 def eigenvalue_view() -> rrb.Spatial2DView:
@@ -105,20 +103,17 @@ def _log_key(stream: rr.RecordingStream, path: EigenvaluePath, number: int) -> N
 
 
 def _send_moving(
-    stream: rr.RecordingStream, chart: Chart, path: EigenvaluePath, track: OrbitTrack | None
+    stream: rr.RecordingStream, chart: Chart, path: EigenvaluePath, tracks: Sequence[OrbitTrack]
 ) -> None:
-    entity = f"{ENTITY}/{path.name}/now_per_s"
-    stream.log(
-        entity,
-        rr.Points2D.from_fields(radii=rr.Radius.ui_points(4.5), draw_order=60.0, show_labels=True),
-        static=True,
-    )
-    _send_points(stream, entity, chart, [speed_index(path.speed)], path.eigenvalues)
-    if track is None:
-        return
-    steady = float(np.ptp(track.speed)) <= STEADY * float(np.abs(track.speed).max())
-    rows = np.array([0]) if steady else thin(track.time.size, MOVING_LIMIT)
-    _send_points(stream, entity, chart, track_index(track, rows), path.at(track.speed[rows]))
+    style = rr.Points2D.from_fields(radii=rr.Radius.ui_points(4.5), draw_order=60.0)
+    shown = distinct_speeds(tracks)
+    entities = [f"{ENTITY}/{path.name}/now_per_s/{track.name}" for track, _ in shown]
+    by_speed = entities[0] if entities else f"{ENTITY}/{path.name}/now_per_s"
+    stream.log(by_speed, style, static=True)
+    _send_points(stream, by_speed, chart, [speed_index(path.speed)], path.eigenvalues)
+    for entity, (track, rows) in zip(entities, shown, strict=True):
+        stream.log(entity, style, static=True)
+        _send_points(stream, entity, chart, track_index(track, rows), path.at(track.speed[rows]))
 
 
 def _send_points(

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TypeAlias
 
 import numpy as np
 import rerun.blueprint as rrb
 
 from . import film_view, map_view, series_view
-from .contents import RecordingContents
+from .contents import OrbitTrack, RecordingContents
 from .eigenvalue_view import eigenvalue_view
 from .orbit_view import orbit_view, zoom_reach
 from .quantities import film_names, frames_of, quantities, shows
@@ -70,13 +71,22 @@ def _summary_view(contents: RecordingContents) -> list[Part]:
     )
 
 
-def _orbit_views(contents: RecordingContents) -> list[Part]:
-    return [orbit_view(track) for track in contents.orbits]
+def _groups(contents: RecordingContents) -> list[tuple[str, list[OrbitTrack]]]:
+    """Runs at constant speed and runs through the speeds: each a tab of its own."""
+    steady = [track for track in contents.orbits if track.constant_speed]
+    passing = [track for track in contents.orbits if not track.constant_speed]
+    return [
+        (name, group)
+        for name, group in (("Constant speed", steady), ("Varying speed", passing))
+        if group
+    ]
 
 
-def _close_ups(contents: RecordingContents) -> list[Part]:
-    reach = zoom_reach(contents.orbits)
-    return [orbit_view(track, zoom=reach) for track in contents.orbits]
+def _grouped(contents: RecordingContents, make: Callable[[list[OrbitTrack]], Part]) -> Part:
+    parts: list[Part] = []
+    for name, group in _groups(contents):
+        parts.append(_named(make(group), name))
+    return rrb.Tabs(*parts) if len(parts) > 1 else parts[0]
 
 
 def _film_views(contents: RecordingContents, flat: bool) -> list[Part]:
@@ -98,14 +108,6 @@ def _map_views(contents: RecordingContents) -> list[Part]:
 
 
 def _overview(contents: RecordingContents) -> Part | None:
-    left: list[Part] = []
-    shares: list[float] = []
-    if contents.orbits:
-        left = [
-            rrb.Horizontal(*_orbit_views(contents)),
-            series_view.series_view(series_view.ECCENTRICITY, contents.orbits),
-        ]
-        shares = [2.2, 1.0]
     middle: list[Part] = _film_views(contents, flat=False)[-2:]
     stability = _map_views(contents)[:1]
     if contents.eigenvalues:
@@ -115,8 +117,8 @@ def _overview(contents: RecordingContents) -> Part | None:
         right.append(rrb.Tabs(*stability) if len(stability) > 1 else stability[0])
     columns: list[Part] = []
     widths: list[float] = []
-    if left:
-        columns.append(rrb.Vertical(*left, row_shares=shares))
+    if contents.orbits:
+        columns.append(_grouped(contents, _orbits_and_eccentricity))
         widths.append(1.8)
     for parts, width in ((middle, 0.95), (right, 1.25)):
         if parts:
@@ -125,15 +127,34 @@ def _overview(contents: RecordingContents) -> Part | None:
     return rrb.Horizontal(*columns, column_shares=widths, name="Overview") if columns else None
 
 
+def _orbits_and_eccentricity(tracks: list[OrbitTrack]) -> Part:
+    return rrb.Vertical(
+        rrb.Horizontal(*[orbit_view(track) for track in tracks]),
+        series_view.series_view(series_view.ECCENTRICITY, tracks),
+        row_shares=[2.2, 1.0],
+    )
+
+
 def _orbits(contents: RecordingContents) -> Part | None:
     if not contents.orbits:
         return None
+    page = _grouped(contents, _orbits_and_close_ups)
+    return _named(page, "Orbits")
+
+
+def _orbits_and_close_ups(tracks: list[OrbitTrack]) -> Part:
+    reach = zoom_reach(tracks)
+    close_ups = [orbit_view(track, zoom=reach) for track in tracks if track.constant_speed]
     return rrb.Vertical(
-        rrb.Horizontal(*_orbit_views(contents), *_close_ups(contents)),
-        series_view.series_view(series_view.DISPLACEMENT, contents.orbits),
+        rrb.Horizontal(*[orbit_view(track) for track in tracks], *close_ups),
+        series_view.series_view(series_view.DISPLACEMENT, tracks),
         row_shares=[1.6, 1.0],
-        name="Orbits",
     )
+
+
+def _named(part: Part, name: str) -> Part:
+    part.name = name
+    return part
 
 
 def _film(contents: RecordingContents) -> Part | None:
@@ -156,5 +177,8 @@ def _stability(contents: RecordingContents) -> Part | None:
 def _time_series(contents: RecordingContents) -> Part | None:
     if not contents.orbits:
         return None
-    views = [series_view.series_view(series, contents.orbits) for series in series_view.ALL_SERIES]
-    return rrb.Vertical(*views, name="Time series")
+    return _named(_grouped(contents, _all_series), "Time series")
+
+
+def _all_series(tracks: list[OrbitTrack]) -> Part:
+    return rrb.Vertical(*[series_view.series_view(s, tracks) for s in series_view.ALL_SERIES])

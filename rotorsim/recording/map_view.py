@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 
 from .chart import HEIGHT, WIDTH, Chart, chart_bounds, log_labels, tick_text
 from .colormaps import colours
-from .contents import CascadePicture, MapPicture, OrbitTrack, Verdict
-from .timeline import RPM, pick_track, speed_index, thin, track_index
+from .contents import CascadePicture, MapPicture, OrbitTrack, Verdict, nearest
+from .timeline import RPM, distinct_speeds, speed_index, track_index
 
 MICRO = 1e6
 PIXELS = (720, 480)
-MOVING_LIMIT = 1_000
 
 VERDICT_COLOURS = {
     Verdict.UNKNOWN: (90, 90, 90),
@@ -117,14 +116,9 @@ def raster(
     values: NDArray[np.generic], x: NDArray[np.float64], y: NDArray[np.float64]
 ) -> NDArray[np.generic]:
     """Nearest value at each pixel of a picture with linear axes; row 0 is the top."""
-    columns = _nearest(x, np.linspace(x[0], x[-1], PIXELS[0]))
-    rows = _nearest(y, np.linspace(y[-1], y[0], PIXELS[1]))
+    columns = nearest(x, np.linspace(x[0], x[-1], PIXELS[0]))
+    rows = nearest(y, np.linspace(y[-1], y[0], PIXELS[1]))
     return np.ascontiguousarray(values[columns[None, :], rows[:, None]])
-
-
-def _nearest(known: NDArray[np.float64], wanted: NDArray[np.float64]) -> NDArray[np.intp]:
-    middles = 0.5 * (known[1:] + known[:-1])
-    return np.searchsorted(middles, wanted)
 
 
 def _log_picture(
@@ -163,15 +157,13 @@ def _send_operating_point(
     style = rr.Points2D.from_fields(
         radii=rr.Radius.ui_points(6.0), colors=(255, 255, 255), draw_order=60.0, show_labels=True
     )
-    stream.log(entity, style, static=True)
-    track = pick_track(tracks, "thd")
-    places = [([speed_index(picture.speed)], picture.speed)]
-    if track is not None:
-        rows = thin(track.time.size, MOVING_LIMIT)
-        places.append((track_index(track, rows), track.speed[rows]))
-    for index, speed in places:
+    mass = tick_text(float(f"{picture.rotor_mass:.4g}"))
+    shown = distinct_speeds(tracks)
+    places = [(f"{entity}/{t.name}", track_index(t, r), t.speed[r]) for t, r in shown]
+    by_speed = f"{entity}/{shown[0][0].name}" if shown else entity
+    places.append((by_speed, [speed_index(picture.speed)], picture.speed))
+    for name, index, speed in places:
+        stream.log(name, style, static=True)
         points = chart.place(speed * RPM, picture.rotor_mass)
-        mass = tick_text(float(f"{picture.rotor_mass:.4g}"))
         labels = [f"{tick_text(round(rpm))} rpm, {mass} kg" for rpm in speed * RPM]
-        columns = rr.Points2D.columns(positions=points, labels=labels)
-        stream.send_columns(entity, index, columns)
+        stream.send_columns(name, index, rr.Points2D.columns(positions=points, labels=labels))

@@ -110,6 +110,7 @@ def series_view(series: Series, tracks: Sequence[OrbitTrack]) -> rrb.TimeSeriesV
     low, high = _vertical_range(series, tracks)
     return rrb.TimeSeriesView(
         origin=f"/series/{series.entity}",
+        contents=[f"$origin/{track.name}" for track in tracks],
         name=series.title,
         axis_y=rrb.ScalarAxis(range=(low, high)),
         plot_legend=rrb.PlotLegend(visible=True, corner=rrb.Corner2D.LeftTop),

@@ -22,6 +22,8 @@ RPM = 60.0 / (2.0 * np.pi)
 CHUNK_ROWS = 32_768
 SAMPLE_LIMIT = 1_000_000
 """More samples than this of one track are thinned to every second, third, ... one."""
+MOVING_LIMIT = 1_000
+"""Positions of a point that follows the speed of a run-up."""
 
 Indices = NDArray[np.intp]
 Columns = Callable[[Indices], Iterable[Any]]
@@ -122,8 +124,30 @@ def indices_of_frames(
 
 
 def pick_track(tracks: Sequence[OrbitTrack], name: str) -> OrbitTrack | None:
-    """Track of that name, else the first, else None."""
+    """First track of that model, else the first of all, else None."""
+    found = tracks_of(tracks, name)
+    return found[0] if found else None
+
+
+def tracks_of(tracks: Sequence[OrbitTrack], name: str) -> list[OrbitTrack]:
+    """Tracks called `name` or `name` and a suffix ("thd", "thd_run_up"); else all of them."""
+    found = [track for track in tracks if track.name == name]
+    found += [track for track in tracks if track.name.startswith(f"{name}_")]
+    return found or list(tracks)
+
+
+def distinct_speeds(tracks: Sequence[OrbitTrack]) -> list[tuple[OrbitTrack, Indices]]:
+    """Tracks that differ in speed over time, each with the samples at which a point is moved.
+
+    Runs of the two thermal models are commonly at the same speed: one point stands for both.
+    """
+    found: list[tuple[OrbitTrack, Indices]] = []
+    seen: set[tuple[float, ...]] = set()
     for track in tracks:
-        if track.name == name:
-            return track
-    return tracks[0] if tracks else None
+        key = tuple(round(float(v), 6) for v in (track.speed[0], track.speed[-1], track.time[-1]))
+        if key[:2] in seen or key in seen:
+            continue
+        seen.add(key[:2] if track.constant_speed else key)
+        rows = np.array([0]) if track.constant_speed else thin(track.time.size, MOVING_LIMIT)
+        found.append((track, rows))
+    return found

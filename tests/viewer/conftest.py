@@ -20,6 +20,7 @@ from rotorsim.recording import (
     MapPicture,
     OrbitTrack,
     RecordingContents,
+    classify,
     write_recording,
 )
 from rotorsim.recording.viewer import viewer_program
@@ -131,7 +132,8 @@ def stability_picture() -> MapPicture:
         )
         for model in MODELS
     }
-    return MapPicture("c = 100 µm", speeds, mass, decay["isothermal"], decay["thd"], MASS)
+    verdict = classify(decay["isothermal"], decay["thd"])
+    return MapPicture("c = 100 µm", speeds, mass, verdict, MASS, decay["isothermal"], decay["thd"])
 
 
 def sample_contents() -> RecordingContents:
