@@ -31,7 +31,7 @@ class Journal:
     Parameters
     ----------
     path : str or Path
-        Made if missing.
+        Made with the first point.
 
     Raises
     ------
@@ -41,6 +41,7 @@ class Journal:
 
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
+        self._whole: str | None = None
         self._points = self._read()
 
     def __len__(self) -> int:
@@ -57,6 +58,10 @@ class Journal:
             return
         digest = case_digest(case)
         line = {"case": digest, "points": [point_to_dict(point) for point in finished]}
+        if self._whole is not None:
+            # Cuts off what a kill left half written, or the next line would join it.
+            write_text(self.path, self._whole)
+            self._whole = None
         with self.path.open("a", encoding="utf-8", newline="\n") as stream:
             stream.write(json.dumps(line) + "\n")
             stream.flush()
@@ -82,8 +87,7 @@ class Journal:
                 if group:
                     points.update(group)
                     kept.append(line)
-        # Cut off what a kill left half written, or the next line would join it.
-        write_text(self.path, "\n".join(kept) + "\n")
+        self._whole = "\n".join(kept) + "\n"
         return points
 
     def _lines(self) -> list[str]:

@@ -157,11 +157,11 @@ def computed_table(
     before = len(Journal(journal))
     if before:
         output.note(f"resuming: {before} points are in {journal}")
-    output.kept.append(f"finished points are in {journal}; the same command resumes there")
     with (
         cluster(scheduler) as executor,
         film_progress(output, len(cases) * len(scenario.speeds)) as progress,
     ):
+        output.kept.append(f"finished points are in {journal}; the same command resumes there")
         points = sweep_points(
             cases,
             [float(speed) for speed in scenario.speeds],

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from ..errors import RotorsimError
+from ..errors import InputError, RotorsimError
 from ..scenario.settings import SpeedRamp
 from . import orbits as orbit_steps
 from .stability import StabilityCurve, stability_curves
@@ -20,11 +20,13 @@ if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
     from ..orbit import Orbit
     from ..scenario import Scenario
-    from ..stability import StabilityMap
+    from ..stability.map import StabilityMap
     from ..table import CoefficientTable
 
 Result = TypeVar("Result")
 Announce = Callable[[str], None]
+MAP_CELLS = 241
+"""Along each axis of the stability map."""
 FILM_FRAMES = 12
 """Speeds at which the film's fields are kept for the recording."""
 
@@ -139,13 +141,30 @@ def one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion
 
 
 def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
-    """Stability map over the scenario's masses, or the map's own choice."""
-    from ..stability import stability_map
+    """Stability map over speed and the scenario's masses.
+
+    Without masses in the scenario: up to three times the rotor's, or without a rotor three times
+    the critical mass (the median of all) at the highest speed.
+    """
+    from ..stability.map import stability_map
+    from ..stability.whirl import rigid_thresholds
 
     settings = scenario.stability
+    speeds = np.linspace(table.speeds[0], table.speeds[-1], MAP_CELLS)
+    speeds = speeds if len(table.speeds) > 1 else table.speeds
     if settings is not None and settings.mass:
-        return stability_map(table, mass=np.asarray(settings.mass))
-    return stability_map(table)
+        return stability_map(table, np.asarray(settings.mass), speeds)
+    if scenario.rotor is not None:
+        middle = scenario.rotor.mass
+    else:
+        top = rigid_thresholds(
+            table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
+        )
+        known = top.critical_mass[np.isfinite(top.critical_mass)]
+        if not known.size:
+            raise InputError("needs masses: no mass is critical here", key="stability.mass")
+        middle = float(np.median(known))
+    return stability_map(table, np.linspace(0.05, 3.0, MAP_CELLS) * middle, speeds)
 
 
 def film_frames(scenario: Scenario, clearance: float) -> list[OperatingPoint]:

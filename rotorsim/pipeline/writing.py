@@ -11,7 +11,7 @@ from .main_job import Announce, Attempts, Results, summary
 from .recordings import eigenvalue_path, orbit_tracks
 
 if TYPE_CHECKING:
-    from ..recording import RecordingContents
+    from ..recording import MapPicture, RecordingContents
 
 KELVIN = 273.15
 RPM = 30.0 / np.pi
@@ -65,8 +65,37 @@ def recording_contents(results: Results) -> RecordingContents:
         orbits=tuple(orbit_tracks(results.orbits)),
         films=tuple(FilmSurface.from_operating_point(point, radius) for point in results.films),
         eigenvalues=tuple(path for path in paths if path is not None),
-        maps=(),
+        maps=tuple(map_pictures(results)),
     )
+
+
+def map_pictures(results: Results) -> list[MapPicture]:
+    """Stability map of each clearance: both thermal models in one picture."""
+    from ..recording import MapPicture, classify
+
+    if results.chart is None:
+        return []
+    dataset = results.chart.dataset
+    models = [str(model) for model in dataset["thermal_model"].values]
+    cold = models.index("isothermal") if "isothermal" in models else 0
+    hot = models.index("thd") if "thd" in models else len(models) - 1
+    pictures = []
+    for clearance in dataset["radial_clearance"].values:
+        # The map's rate is of growth, the picture's of decay.
+        decay = -dataset["decay_rate"].sel(radial_clearance=clearance)
+        decay = decay.transpose("thermal_model", "speed", "mass").values
+        pictures.append(
+            MapPicture(
+                title=f"c = {clearance * 1e6:.4g} um",
+                speed=dataset["speed"].values,
+                mass=dataset["mass"].values,
+                verdict=classify(decay[cold], decay[hot]),
+                isothermal_decay=decay[cold],
+                heated_decay=decay[hot],
+                rotor_mass=results.rotor_mass,
+            )
+        )
+    return pictures
 
 
 def write_figures(results: Results, folder: Path) -> list[Path]:
