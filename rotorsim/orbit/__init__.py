@@ -5,6 +5,7 @@ Everything is SI and in the load frame. `simulate(OrbitProblem(...))` gives an `
 """
 
 from .equilibrium import find_equilibrium, linearize_force
+from .force_map import FilmMapForce, ForceMap
 from .forces import (
     BearingForce,
     CallableForce,
@@ -40,6 +41,8 @@ __all__ = [
     "Cascade",
     "Controller",
     "Ellipse",
+    "FilmMapForce",
+    "ForceMap",
     "Growth",
     "HarmonicForce",
     "LinearForce",

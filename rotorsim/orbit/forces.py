@@ -47,6 +47,14 @@ class CompiledForce:
     numbers: Array
     table: Array
 
+    def evaluate(
+        self, x: float, y: float, vx: float, vy: float, speed: float
+    ) -> tuple[float, float]:
+        """Film force [N] at one point."""
+        # whole numbers would be compiled for anew
+        motion = (float(x), float(y), float(vx), float(vy), float(speed))
+        return kernels.film_force(self.kind, *motion, self.numbers, self.table)
+
 
 @runtime_checkable
 class CompilableForce(BearingForce, Protocol):
@@ -145,8 +153,8 @@ class LinearForce:
 
 
 def squeeze_force_scale(viscosity: float, length: float, radius: float, clearance: float) -> float:
-    """2 mu L R (R/c)^3 [N s/m]: the unit of film force per squeeze velocity."""
-    return 2.0 * viscosity * length * radius * (radius / clearance) ** 3
+    """2 mu L (R/c)^3 [N s/m]: the unit of film force per squeeze velocity."""
+    return 2.0 * viscosity * length * (radius / clearance) ** 3
 
 
 @dataclass(frozen=True)
@@ -176,8 +184,7 @@ class ShortBearingForce:
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
         """Film force [N]."""
-        form = self.compiled()
-        return kernels.film_force(form.kind, x, y, vx, vy, speed, form.numbers, form.table)
+        return self.compiled().evaluate(x, y, vx, vy, speed)
 
 
 @dataclass(frozen=True)

@@ -122,7 +122,7 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
                 method=problem.method.value,
                 t_eval=times,
                 events=run.touch if problem.stop_at_contact else None,
-                rtol=problem.relative_tolerance,
+                rtol=problem.tolerance,
                 atol=run.tolerance,
             )
         except InputError:
@@ -151,7 +151,7 @@ def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
     state = initial_state(problem, equilibrium)
     clearance, least = force.radial_clearance, problem.minimum_film
     size = rotor.mass.shape[0]
-    tolerance = np.full(state.size, 1e-3 * problem.relative_tolerance * clearance)
+    tolerance = np.full(state.size, 1e-3 * problem.tolerance * clearance)
     tolerance[size : 2 * size] *= max(problem.schedule.speeds)
 
     def touch(_t: float, s: Array) -> float:
@@ -233,4 +233,5 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         status=status,
         message=message,
         events=events,
+        forced=bool(np.any(problem.rotor.unbalance)) or bool(problem.loads),
     )

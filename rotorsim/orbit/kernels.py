@@ -102,7 +102,7 @@ def squeeze_force(
 ) -> tuple[float, float]:
     """Isoviscous ruptured film at any position and velocity.
 
-    numbers: clearance [m], 2 mu L R (R/c)^3 [N s/m], then L/D or the map's numbers.
+    numbers: clearance [m], 2 mu L (R/c)^3 [N s/m], then L/D or the map's numbers.
     """
     sx, sy = vx + 0.5 * speed * y, vy - 0.5 * speed * x
     squeeze = math.hypot(sx, sy)

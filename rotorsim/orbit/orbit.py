@@ -73,6 +73,8 @@ class Orbit:
     message : str
         What ended the run early, or what was recognised.
     events : tuple of OrbitEvent
+    forced : bool
+        Whether unbalance or a load varied in time; if not, a steady whirl is the film's own.
     """
 
     t: Array
@@ -93,6 +95,7 @@ class Orbit:
     status: OrbitStatus
     message: str = ""
     events: tuple[OrbitEvent, ...] = ()
+    forced: bool = True
 
     @property
     def revolutions(self) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from .forces import BearingForce
+from .forces import BearingForce, LinearForce
 from .loads import Controller, Load
 from .rotor import RotorModel
 from .speed import SpeedSchedule
@@ -64,8 +64,9 @@ class OrbitProblem:
     thermal_model : str
         Label of the film behind the force.
     method : Method
-    relative_tolerance : float
-        Of one integration step; the absolute one is 1e-3 of it times the clearance.
+    relative_tolerance : float or None
+        Of one integration step; the absolute one is 1e-3 of it times the clearance. None: 1e-8
+        with linear coefficients, whose growth is to be measured, 1e-7 with a nonlinear film.
     """
 
     force: BearingForce
@@ -83,7 +84,14 @@ class OrbitProblem:
     samples_per_revolution: int = 64
     thermal_model: str = "isothermal"
     method: Method = Method.LSODA
-    relative_tolerance: float = 1e-8
+    relative_tolerance: float | None = None
+
+    @property
+    def tolerance(self) -> float:
+        """Relative tolerance in use."""
+        if self.relative_tolerance is not None:
+            return self.relative_tolerance
+        return 1e-8 if isinstance(self.force, LinearForce) else 1e-7
 
     def __post_init__(self) -> None:
         clearance = self.force.radial_clearance
@@ -101,7 +109,7 @@ class OrbitProblem:
                 key="orbit.samples_per_revolution",
                 value=self.samples_per_revolution,
             )
-        if not 1e-13 <= self.relative_tolerance <= 1e-2:
+        if not 1e-13 <= self.tolerance <= 1e-2:
             raise InputError(
                 "must lie between 1e-13 and 1e-2",
                 key="orbit.relative_tolerance",

@@ -64,7 +64,7 @@ def recognise(orbit: Orbit) -> Recognition:
     if after < _AT_REST * clearance and after <= max(before, 1e-8 * clearance):
         return Recognition(OrbitStatus.SETTLED, "at rest", steady_from=_rest_from(orbit))
     drift = abs(_middle(last)[0] - _middle(third)[0])
-    period = _period(last, after)
+    period = _period(last, after) if orbit.forced else None
     if period is None and (abs(after - before) > _STEADY * after or drift > 5 * _STEADY * after):
         trend = "growing" if after > before else "decaying"
         return Recognition(OrbitStatus.COMPLETED, f"still {trend}")
@@ -80,7 +80,7 @@ def recognise(orbit: Orbit) -> Recognition:
         if abs(later - earlier) > 0.01 * later:
             trend = "growing" if later > earlier else "decaying"
             return Recognition(OrbitStatus.COMPLETED, f"whirl at {ratio:.4f} still {trend}")
-    shaken = orbit_ellipse(last).semi_major > 0.01 * after
+    shaken = orbit.forced and orbit_ellipse(last).semi_major > 0.01 * after
     status = OrbitStatus.QUASI_PERIODIC if shaken else OrbitStatus.LIMIT_CYCLE
     message = "steady whirl" if ratio is None else f"steady whirl at {ratio:.4f} of shaft speed"
     return Recognition(status, message, start, whirl_frequency_ratio=ratio)

@@ -65,7 +65,7 @@ def short_bearing_impedance(
     Returns
     -------
     radial, tangential : float
-        In units of 2 mu |v_s| L R (R/c)^3, along the eccentricity and 90 degrees ahead of it.
+        In units of 2 mu |v_s| L (R/c)^3, along the eccentricity and 90 degrees ahead of it.
     """
     radial, tangential = squeeze_integrals(eccentricity_ratio, angle)
     factor = -2.0 * slenderness * slenderness
