@@ -1,0 +1,225 @@
+"""Tolerances on the inputs carried through to thresholds: what a drawing's tolerance means."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+
+Array = NDArray[np.float64]
+Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """Distribution of one input.
+
+    Attributes
+    ----------
+    nominal : float
+    spread : float
+        Half width of a uniform distribution, standard deviation of a normal one; above 0.
+    kind : {"uniform", "normal"}
+        A normal distribution is cut off at four standard deviations.
+    """
+
+    nominal: float
+    spread: float
+    kind: Literal["uniform", "normal"] = "uniform"
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.nominal):
+            raise InputError("must be finite", key="nominal", value=self.nominal)
+        if not (math.isfinite(self.spread) and self.spread > 0.0):
+            raise InputError("must be above 0", key="spread", value=self.spread)
+        if self.kind not in ("uniform", "normal"):
+            raise InputError("must be uniform or normal", key="kind", value=self.kind)
+
+    def from_unit(self, unit: ArrayLike) -> Array:
+        """Values at cumulative probabilities `unit`, 0 to 1."""
+        u = np.asarray(unit, dtype=float)
+        if self.kind == "uniform":
+            return self.nominal + self.spread * (2.0 * u - 1.0)
+        from scipy.special import ndtr, ndtri
+
+        tail = ndtr(-4.0)
+        return self.nominal + self.spread * np.asarray(ndtri(tail + u * (1.0 - 2.0 * tail)))
+
+
+@dataclass(frozen=True, eq=False)
+class Propagation:
+    """Samples of inputs and what they lead to.
+
+    Attributes
+    ----------
+    inputs, outputs : mapping of str to (n,) array
+        NaN in an output: not defined for that sample (no threshold, say), or failed.
+    failures : tuple of (int, str)
+        Samples whose evaluation raised, and why.
+    """
+
+    inputs: Mapping[str, Array]
+    outputs: Mapping[str, Array]
+    failures: tuple[tuple[int, str], ...] = ()
+
+    def quantile(self, output: str, probability: ArrayLike = (0.05, 0.5, 0.95)) -> Array:
+        """Quantiles of an output over the samples where it is defined."""
+        values = self._output(output)
+        values = values[np.isfinite(values)]
+        if not values.size:
+            return np.full(np.shape(probability), np.nan)
+        return np.asarray(np.quantile(values, np.asarray(probability, dtype=float)))
+
+    def probability_below(self, output: str, limit: float) -> tuple[float, float]:
+        """Probability that an output is below `limit`, and its standard error.
+
+        Samples where it is not defined count as not below, failed ones not at all: with
+        ``critical_mass`` and the rotor's mass this is the probability of instability.
+        """
+        values = self._output(output)
+        keep = np.ones(values.size, dtype=bool)
+        keep[[i for i, _ in self.failures]] = False
+        n = int(keep.sum())
+        if n == 0:
+            return math.nan, math.nan
+        p = float(np.mean(values[keep] < limit))
+        # Wilson's centre keeps the error above zero where no sample, or every one, is below.
+        centre = (p * n + 2.0) / (n + 4.0)
+        return p, math.sqrt(centre * (1.0 - centre) / (n + 4.0))
+
+    def importance(self, output: str) -> dict[str, float]:
+        """Spearman's rank correlation of each input with an output, strongest first."""
+        from scipy.stats import rankdata
+
+        values = self._output(output)
+        good = np.isfinite(values)
+        result = dict.fromkeys(self.inputs, 0.0)
+        if good.sum() < 3 or np.ptp(values[good]) == 0.0:
+            return result
+        rank = rankdata(values[good])
+        for name, column in self.inputs.items():
+            result[name] = float(np.corrcoef(rankdata(column[good]), rank)[0, 1])
+        return dict(sorted(result.items(), key=lambda item: -abs(item[1])))
+
+    def first_order_index(self, output: str, bins: int = 16) -> dict[str, float]:
+        """Share of an output's variance that each input explains alone, largest first.
+
+        Notes
+        -----
+        First-order Sobol' index Var(E[Y|X_i])/Var(Y), by the correlation ratio over equally filled
+        bins of X_i, less what the finite number of samples in a bin feigns.
+        """
+        values = self._output(output)
+        good = np.isfinite(values)
+        y = values[good]
+        result = dict.fromkeys(self.inputs, 0.0)
+        bins = min(bins, y.size // 4)
+        if bins < 2 or np.ptp(y) == 0.0:
+            return result
+        total = float(np.sum((y - y.mean()) ** 2))
+        for name, column in self.inputs.items():
+            parts = np.array_split(y[np.argsort(column[good], kind="stable")], bins)
+            within = sum(float(np.sum((p - p.mean()) ** 2)) for p in parts)
+            ratio = 1.0 - (within / (y.size - bins)) / (total / (y.size - 1))
+            result[name] = max(0.0, ratio)
+        return dict(sorted(result.items(), key=lambda item: -item[1]))
+
+    def _output(self, name: str) -> Array:
+        if name not in self.outputs:
+            known = ", ".join(self.outputs) or "none"
+            raise InputError(f"no such output; there are {known}", key="output", value=name)
+        return self.outputs[name]
+
+
+def sample_inputs(
+    tolerances: Mapping[str, Tolerance],
+    count: int,
+    method: Literal["sobol", "latin_hypercube"] = "sobol",
+    seed: int = 0,
+) -> list[dict[str, float]]:
+    """Draw `count` sets of inputs.
+
+    Parameters
+    ----------
+    tolerances : mapping of str to Tolerance
+    count : int
+        Sobol' sequences are balanced at powers of two; others are rounded up to one.
+    method : {"sobol", "latin_hypercube"}
+    seed : int
+        The same seed draws the same samples.
+    """
+    from scipy.stats import qmc
+
+    if not tolerances:
+        raise InputError("at least one input needs a tolerance", key="tolerances")
+    if count < 2:
+        raise InputError("must be 2 or more", key="count", value=count)
+    rng = np.random.default_rng(seed)
+    if method == "sobol":
+        power = math.ceil(math.log2(count))
+        unit = qmc.Sobol(len(tolerances), rng=rng).random_base2(power)
+    elif method == "latin_hypercube":
+        unit = qmc.LatinHypercube(len(tolerances), rng=rng).random(count)
+    else:
+        raise InputError("must be sobol or latin_hypercube", key="method", value=method)
+    columns = {n: t.from_unit(unit[:, i]) for i, (n, t) in enumerate(tolerances.items())}
+    return [{n: float(c[i]) for n, c in columns.items()} for i in range(len(unit))]
+
+
+def propagate(
+    function: Callable[[dict[str, float]], Mapping[str, float | None]],
+    tolerances: Mapping[str, Tolerance],
+    count: int = 128,
+    method: Literal["sobol", "latin_hypercube"] = "sobol",
+    seed: int = 0,
+    mapper: Mapper = map,
+) -> Propagation:
+    """Carry tolerances through `function`.
+
+    Parameters
+    ----------
+    function : callable
+        Inputs by name to outputs by name, for example ``threshold_speed`` [rad/s] and
+        ``critical_mass`` [kg]; None or NaN: not defined there. It must be picklable where `mapper`
+        uses processes.
+    tolerances : mapping of str to Tolerance
+    count, method, seed
+        As for `sample_inputs`.
+    mapper : callable
+        ``map``, or the ``map`` of any executor.
+
+    Returns
+    -------
+    Propagation
+    """
+    samples = sample_inputs(tolerances, count, method, seed)
+    results = list(mapper(_Guarded(function), samples))
+    failures = tuple((i, r) for i, r in enumerate(results) if isinstance(r, str))
+    good = [r for r in results if not isinstance(r, str)]
+    names = list(dict.fromkeys(name for r in good for name in r))
+    inputs = {n: np.array([s[n] for s in samples]) for n in tolerances}
+    return Propagation(inputs, {n: _column(results, n) for n in names}, failures)
+
+
+def _column(results: Sequence[Mapping[str, float | None] | str], name: str) -> Array:
+    values = [None if isinstance(r, str) else r.get(name) for r in results]
+    return np.array([np.nan if v is None else float(v) for v in values])
+
+
+@dataclass(frozen=True)
+class _Guarded:
+    """The function, with one sample's failure kept to that sample."""
+
+    function: Callable[[dict[str, float]], Mapping[str, float | None]]
+
+    def __call__(self, sample: dict[str, float]) -> Mapping[str, float | None] | str:
+        try:
+            return self.function(sample)
+        except Exception as error:
+            return f"{type(error).__name__}: {error}"

@@ -1,0 +1,163 @@
+"""Responses, root locus, margins and controllers."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from rotorsim.errors import InputError
+from rotorsim.stability.control import (
+    StateFeedback,
+    design_lqr,
+    design_pd,
+    locus_over_damping,
+    locus_over_mass,
+    loop_margins,
+    proportional_derivative,
+    receptance,
+    step_response,
+    unbalance_response,
+)
+from rotorsim.stability.statespace import state_space
+from rotorsim.stability.whirl import rigid_threshold
+from rotorsim.table import Coefficients, CoefficientTable
+
+K = np.array([[2.2e8, 6.6e8], [-0.9e8, 3.0e8]])
+C = np.array([[7e5, 1e5], [1e5, 3e5]])
+FILM = Coefficients(K, C, speed=1200.0)
+CRITICAL = rigid_threshold(K, C, 1200.0).critical_mass
+MASS = 1.5 * CRITICAL
+
+
+@pytest.fixture
+def system():
+    return state_space(FILM, MASS)
+
+
+def rate(system):
+    return system.poles().real.max()
+
+
+def test_receptance_is_the_inverse_dynamic_stiffness(system):
+    omega = np.array([0.0, 100.0, 900.0])
+    found = receptance(system, omega)
+    assert found.shape == (2, 2, 3)
+    for i, w in enumerate(omega):
+        expected = np.linalg.inv(K + 1j * w * C - MASS * w**2 * np.eye(2))
+        assert np.allclose(found[:, :, i], expected, rtol=1e-9)
+
+
+def test_unbalance_response_against_time_integration(tmp_path):
+    names = [
+        f"{a}{i}{j} [{u}]" for a, u in (("k", "N/m"), ("c", "N s/m")) for i in "xy" for j in "xy"
+    ]
+    row = [1200.0, *K.ravel(), *C.ravel()]
+    text = ",".join(["speed [rad/s]", *names]) + "\n" + ",".join(repr(float(v)) for v in row)
+    (tmp_path / "t.csv").write_text(text)
+    table = CoefficientTable.from_csv(tmp_path / "t.csv")
+    mass, u, w = 0.3 * CRITICAL, 0.01, 1200.0
+    amplitude = unbalance_response(table, mass, u)[0]
+    a = state_space(FILM, mass).A
+
+    def motion(t, s):
+        force = u * w**2 / mass * np.array([np.cos(w * t), np.sin(w * t)])
+        return a @ s + np.concatenate([[0.0, 0.0], force])
+
+    end = 2.0 * np.pi / w * 80
+    path = solve_ivp(motion, (0.0, end), np.zeros(4), method="LSODA", rtol=1e-10, atol=1e-15)
+    assert np.allclose(path.y[:2, -1], amplitude.real, rtol=1e-5, atol=1e-10)
+
+
+def test_step_response_ends_at_the_static_deflection():
+    stable = state_space(FILM, 0.3 * CRITICAL)
+    time, displacement = step_response(stable, force=100.0, entry=1, duration=0.3)
+    assert time[-1] == pytest.approx(0.3)
+    assert np.allclose(displacement[:, -1], np.linalg.solve(K, [0.0, 100.0]), rtol=1e-6)
+
+
+def test_root_locus_crosses_at_the_critical_mass():
+    locus = locus_over_mass(FILM, CRITICAL * np.array([0.5, 0.9, 1.0, 1.1, 2.0]))
+    rates = locus.eigenvalues.real.max(axis=1)
+    assert np.all(rates[:2] < 0.0)
+    assert np.all(rates[3:] > 0.0)
+    assert abs(rates[2]) < 1e-9
+    added = locus_over_damping(FILM, MASS, np.linspace(0.0, 2e6, 30))
+    assert added.eigenvalues[0].real.max() > 0.0 > added.eigenvalues[-1].real.max()
+
+
+def test_lqr_stabilises_past_the_passive_threshold(system):
+    assert rate(system) > 0.0
+    feedback = design_lqr(system, displacement_scale=1e-6, force_scale=1e3)
+    closed = feedback.closed_loop(system)
+    assert rate(closed) < 0.0
+    assert closed.state_labels == system.state_labels
+    # The linear-quadratic optimum: A'P + PA - PBB'P/r + Q = 0 has the gain it claims.
+    import scipy.linalg
+
+    q = np.diag([1e12, 1e12, 0.0, 0.0])
+    r = np.eye(2) * 1e-6
+    p = scipy.linalg.solve_continuous_are(system.A, system.B, q, r)
+    expected = np.linalg.solve(r, system.B.T @ p)
+    assert np.allclose(feedback.gain, expected, rtol=1e-5, atol=1e-6 * np.abs(expected).max())
+    # Half the gain and ten times the gain still hold it (guaranteed margins of a regulator).
+    for factor in (0.55, 10.0):
+        assert rate(StateFeedback(factor * feedback.gain).closed_loop(system)) < 0.0
+
+
+def test_controlled_poles_agree_with_the_simulated_decay(system):
+    closed = design_pd(FILM, MASS, decay_rate=-30.0).closed_loop(system)
+    assert rate(closed) == pytest.approx(-30.0, rel=1e-6)
+    path = solve_ivp(
+        lambda t, s: closed.A @ s, (0.0, 0.3), [1e-6, 0, 0, 0],
+        method="LSODA", rtol=1e-10, atol=1e-20, dense_output=True,
+    )  # fmt: skip
+    late = np.linspace(0.15, 0.3, 4000)
+    size = np.linalg.norm(path.sol(late)[:2], axis=0)
+    blocks = size.reshape(8, -1).max(axis=1)
+    slope = np.polyfit(late.reshape(8, -1).mean(axis=1), np.log(blocks), 1)[0]
+    assert slope == pytest.approx(-30.0, rel=0.02)
+
+
+def test_pd_design_is_the_least_gain_and_says_when_there_is_none(system):
+    feedback = design_pd(FILM, MASS, decay_rate=0.0)
+    damping = feedback.gain[0, 2]
+    assert damping > 0.0
+    assert rate(proportional_derivative(0.0, 0.99 * damping).closed_loop(system)) > 0.0
+    assert rate(proportional_derivative(0.0, 1.01 * damping).closed_loop(system)) < 0.0
+    assert np.all(design_pd(FILM, 0.5 * CRITICAL, 0.0).gain == 0.0)
+    with pytest.raises(InputError, match="no derivative gain"):
+        design_pd(FILM, MASS, decay_rate=-1e6)
+
+
+def test_saturation():
+    feedback = proportional_derivative(1e6, 1e3, max_force=50.0)
+    assert np.array_equal(feedback([1e-5, -1.0, 0.0, 0.0]), [-10.0, 50.0])
+    assert feedback(np.zeros((7, 4))).shape == (7, 2)
+    with pytest.raises(InputError, match="max_force"):
+        proportional_derivative(1.0, 1.0, max_force=0.0)
+    with pytest.raises(InputError, match="gain"):
+        StateFeedback(np.eye(2))
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_margins_are_where_the_loop_turns_unstable(system, axis):
+    feedback = proportional_derivative(0.0, 2.0 * design_pd(FILM, MASS, 0.0).gain[0, 2])
+    margins = loop_margins(system, feedback, axis)
+    assert margins.stable
+
+    def rate_with(factor):
+        gain = np.array(feedback.gain, dtype=complex)
+        gain[axis] *= factor
+        return np.linalg.eigvals(system.A - system.B @ gain).real.max()
+
+    for limit, inside, outside in (
+        (margins.gain_reduction, 1.001, 0.999),
+        (margins.gain_increase, 0.999, 1.001),
+    ):
+        if 0.0 < limit < np.inf:
+            assert rate_with(limit * inside) < 0.0 < rate_with(limit * outside)
+    assert margins.gain_reduction > 0.0 or rate_with(0.0) < 0.0
+    if np.isfinite(margins.phase_margin):
+        assert 0.0 < margins.phase_margin < np.pi
+    assert 0.0 < margins.modulus_margin <= 1.0
+    with pytest.raises(InputError, match="axis"):
+        loop_margins(system, feedback, 2)
