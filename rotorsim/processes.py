@@ -16,9 +16,10 @@ from multiprocessing.connection import wait as wait_for_any
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from .chunks import Chunk, result_or_failure, solve_chunk
+
 if TYPE_CHECKING:
     from .operating_point import OperatingPoint
-    from .sweep import Chunk
 
     Points = tuple[OperatingPoint, ...]
 
@@ -54,8 +55,6 @@ def _drain(
     solve_case: Callable[..., Any] | None,
 ) -> Iterator[tuple[Chunk, Points]]:
     """Keep the pool busy and no more: what it holds when it breaks must be done again."""
-    from .sweep import solve_chunk
-
     while waiting or running:
         while waiting and len(running) < 2 * workers:
             with _anonymous_main():
@@ -63,15 +62,15 @@ def _drain(
             running[future] = waiting.popleft()
         finished, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in finished:
-            points = future.result()
-            yield running.pop(future), points
+            if isinstance(future.exception(), BrokenExecutor):
+                future.result()  # raises: the pool is lost, and what is running with it
+            chunk = running.pop(future)
+            yield chunk, result_or_failure(future, chunk)
 
 
 def _one_by_one(
     chunk: Chunk, solve_case: Callable[..., Any] | None
 ) -> Iterator[tuple[Chunk, Points]]:
-    from .sweep import Chunk, result_or_failure, solve_chunk
-
     for speed in chunk.speeds:
         single = Chunk(chunk.number, chunk.case, (speed,))
         with _pool(1) as pool:

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, Executor, wait
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from .chunks import Chunk, along_speed, result_or_failure, solve_chunk
 from .errors import InputError
 from .journal import Journal
-from .model import Case, EccentricityTarget
+from .model import Case
 from .operating_point import OperatingPoint
-from .status import SolveStatus
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -28,16 +25,6 @@ Progress = Callable[[int, int, OperatingPoint], None]
 CHUNK = 5
 """Speeds solved one after the other by one worker: long enough for warm starts to pay, short enough
 for the work to spread evenly and for progress to move."""
-
-
-@dataclass(frozen=True)
-class Chunk:
-    """Consecutive speeds [rad/s] of one case: what one worker does at a time."""
-
-    number: int
-    """Place of the case in the sweep."""
-    case: Case
-    speeds: tuple[float, ...]
 
 
 def tabulate(
@@ -136,48 +123,6 @@ def sweep_points(
     return [done[index, speed] for index in range(len(cases)) for speed in speeds]
 
 
-def solve_chunk(
-    chunk: Chunk, solve_case: Callable[..., Any] | None = None
-) -> tuple[OperatingPoint, ...]:
-    """Points of one chunk; this is what travels to the workers."""
-    return tuple(_along_speed(chunk, solve_case))
-
-
-def failed_point(case: Case, speed: float, message: str) -> OperatingPoint:
-    """Point with status ``failed``: everything that is not known is NaN."""
-    nan = float("nan")
-    target = case.target
-    known = target.eccentricity_ratio if isinstance(target, EccentricityTarget) else nan
-    load = nan if isinstance(target, EccentricityTarget) else target.load
-    return OperatingPoint(
-        status=SolveStatus.FAILED,
-        message=message,
-        thermal_model=case.thermal.model.value,
-        cavitation=case.film.cavitation.value,
-        speed=speed,
-        radial_clearance=case.bearing.radial_clearance,
-        eccentricity_ratio=known,
-        attitude_angle=nan,
-        load=load,
-        sommerfeld_number=nan,
-        max_pressure=nan,
-        max_temperature=nan,
-        mean_temperature=nan,
-        friction_force=nan,
-        power_loss=nan,
-        side_flow=nan,
-        min_film_thickness=nan,
-        stiffness=np.full((2, 2), nan),
-        damping=np.full((2, 2), nan),
-        critical_mass=None,
-        critical_mass_dimensionless=None,
-        whirl_frequency_ratio=None,
-        stability=None,
-        iterations=0,
-        residual=nan,
-    )
-
-
 def _from_journal(
     journal: Journal | None, cases: Sequence[Case], speeds: Sequence[float]
 ) -> dict[tuple[int, float], OperatingPoint]:
@@ -205,26 +150,6 @@ def _chunks(
     return sorted(chunks, key=lambda chunk: chunk.case.thermal.model.value == "isothermal")
 
 
-def _along_speed(chunk: Chunk, solve_case: Callable[..., Any] | None) -> Iterator[OperatingPoint]:
-    """Each speed starts from the last converged one; a failure costs its own point alone."""
-    if solve_case is None:
-        from .solver import solve_case as film_solver
-
-        solve_case = film_solver
-    initial = None
-    for speed in chunk.speeds:
-        try:
-            point, warm = solve_case(chunk.case, speed, initial=initial)
-            initial = warm if point.converged else None
-        except InputError:
-            raise  # true of the whole case: to be told, not to be tabulated
-        except Exception as error:
-            # Whatever a solver may raise: the sweep goes on, the message travels with the point.
-            point = failed_point(chunk.case, speed, f"{type(error).__name__}: {error}")
-            initial = None
-        yield point
-
-
 def _computed(
     chunks: Sequence[Chunk],
     executor: Executor | None,
@@ -237,7 +162,7 @@ def _computed(
         yield from _on_executor(chunks, executor, solve_case)
     elif workers == 1:
         for chunk in chunks:
-            for speed, point in zip(chunk.speeds, _along_speed(chunk, solve_case), strict=True):
+            for speed, point in zip(chunk.speeds, along_speed(chunk, solve_case), strict=True):
                 yield Chunk(chunk.number, chunk.case, (speed,)), (point,)
     else:
         from .processes import on_processes
@@ -258,21 +183,6 @@ def _on_executor(
     finally:
         for future in running:
             future.cancel()
-
-
-def result_or_failure(
-    future: Future[tuple[OperatingPoint, ...]], chunk: Chunk
-) -> tuple[OperatingPoint, ...]:
-    """Points of a finished future; failed ones where its worker was lost."""
-    try:
-        return future.result()
-    except InputError:
-        raise
-    except BrokenExecutor as error:
-        message = f"the worker process was lost ({error})"
-    except Exception as error:
-        message = f"the executor failed: {type(error).__name__}: {error}"
-    return tuple(failed_point(chunk.case, speed, message) for speed in chunk.speeds)
 
 
 def available_cores() -> int:

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rotorsim.chunks import failed_point
 from rotorsim.errors import InputError
 from rotorsim.journal import Journal
 from rotorsim.model import (
@@ -31,7 +32,7 @@ from rotorsim.model import (
 from rotorsim.operating_point import HeatBalance, OperatingPoint
 from rotorsim.records import point_from_dict, point_to_dict, strict_json
 from rotorsim.status import SolveStatus, Stability
-from rotorsim.sweep import CHUNK, failed_point, sweep_points
+from rotorsim.sweep import CHUNK, sweep_points
 
 ROOT = Path(__file__).parents[2]
 SPEEDS = [100.0 * (step + 1) for step in range(12)]
