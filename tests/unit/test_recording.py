@@ -1,0 +1,329 @@
+"""The recording, read back with rerun's own reader and compared with what was simulated."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pyarrow as pa
+import pytest
+import rerun as rr
+from rerun.chunk import RrdReader
+
+from rotorsim.errors import InputError
+from rotorsim.recording import (
+    CascadePicture,
+    EigenvaluePath,
+    FilmSurface,
+    MapPicture,
+    OrbitTrack,
+    RecordingContents,
+    Verdict,
+    classify,
+    open_viewer,
+    surfaces,
+    viewer,
+    write_recording,
+)
+from rotorsim.recording.chart import nice_ticks
+from rotorsim.recording.colormaps import colours
+from rotorsim.recording.map_view import raster, verdict_pixels
+from rotorsim.recording.series_view import envelope_rows, whirl_ratio
+from rotorsim.recording.timeline import frame_rows, thin
+
+C = 1e-4
+
+
+@pytest.fixture(autouse=True)
+def _strict():
+    rr.set_strict_mode(True)
+    yield
+    rr.set_strict_mode(False)
+
+
+def track(name="thd", count=3001, speed=(800.0, 800.0), whirl=0.48):
+    t = np.linspace(0.0, 0.5, count)
+    w = np.linspace(*speed, count)
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (w[1:] + w[:-1]) * np.diff(t))])
+    grow = 1e-6 * np.exp(6.0 * t)
+    x, y = 3e-5 + grow * np.cos(whirl * angle), 4e-5 + grow * np.sin(whirl * angle)
+    force = np.stack([np.full(count, -1e4), 100.0 * np.sin(angle)], axis=-1)
+    return OrbitTrack(name, t, x, y, angle, w, C, np.array([3e-5, 4e-5]), force)
+
+
+def film(name="thd", speed=800.0, peak=2e6):
+    theta = 2.1 + (np.arange(80) + 0.5) * 2 * np.pi / 80
+    y = (np.arange(16) - 7.5) * 5e-3
+    bump = np.clip(np.cos(theta), 0, None)[:, None] * (1 - (y / 0.04) ** 2)
+    warm = 313.15 + 20.0 * bump if name == "thd" else None
+    return FilmSurface(name, speed, theta, y, peak * bump, warm, 0.05, C, np.array([3e-5, 4e-5]))
+
+
+def path(name="thd"):
+    speed = np.linspace(100.0, 1500.0, 15)
+    values = np.stack([0.05 * speed - 40 + 0.48j * speed, 0.05 * speed - 40 - 0.48j * speed], 1)
+    return EigenvaluePath(name, speed, values, 800.0, 0.48)
+
+
+def contents(**changes):
+    speed, mass = np.linspace(100, 1500, 12), np.linspace(10, 500, 9)
+    cold = 300.0 - 0.15 * speed[:, None] - 0.2 * mass
+    hot = cold - 0.08 * speed[:, None]
+    given = {
+        "title": "Test",
+        "summary": "The THD orbit **grows**.",
+        "orbits": (track("isothermal"), track()),
+        "films": (film("isothermal"), film(), film(speed=1200.0, peak=3e6)),
+        "eigenvalues": (path("isothermal"), path()),
+        "maps": (MapPicture("c", speed, mass, classify(cold, hot), 300.0, cold, hot),),
+        "cascades": (
+            CascadePicture("run-up", speed, np.linspace(1, 3000, 20), np.ones((12, 20)) * 1e-6),
+        ),
+    }
+    return RecordingContents(**{**given, **changes})
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    what = contents()
+    return write_recording(tmp_path_factory.mktemp("logs") / "new" / "test.rrd", what), what
+
+
+def column(file, entity, ending, timeline="time"):
+    """Values of one component in time order, (rows, ...), and their index."""
+    batches = [
+        batch
+        for batch in (
+            chunk.to_record_batch() for chunk in RrdReader(file).stream().filter(content=[entity])
+        )
+        if timeline in batch.schema.names
+    ]
+    name = next(n for n in batches[0].schema.names if n.endswith(ending))
+    index = np.concatenate([b.column(timeline).cast(pa.int64()).to_numpy() for b in batches])
+    rows = [row for b in batches for row in b.column(name).to_pylist()]
+    order = np.argsort(index, kind="stable")
+    return index[order], [rows[i] for i in order]
+
+
+def test_verify_accepts_the_file(written):
+    program = str(viewer.viewer_program())
+    done = subprocess.run([program, "rrd", "verify", str(written[0])], capture_output=True)
+    assert done.returncode == 0, done.stderr.decode()
+
+
+def test_no_temporary_file_stays(written):
+    assert [p.name for p in written[0].parent.iterdir()] == ["test.rrd"]
+
+
+def test_layout_and_timelines_are_in_the_file(written):
+    reader = RrdReader(written[0])
+    assert len(reader.blueprints()) == 1
+    timelines = {index.name for index in reader.store().schema().index_columns()}
+    assert {"time", "milli-revolutions", "speed_rpm"} <= timelines
+
+
+@pytest.mark.parametrize("name", ["isothermal", "thd"])
+def test_journal_positions_equal_the_simulated_ones(written, name):
+    file, what = written
+    one = next(t for t in what.orbits if t.name == name)
+    index, rows = column(file, f"/orbit/{name}/journal_um", "Points2D:positions")
+    assert np.array_equal(index, np.round(one.time * 1e9).astype(np.int64))
+    points = np.array(rows)[:, 0]
+    np.testing.assert_allclose(points, np.stack([one.x, -one.y], 1) * 1e6, rtol=2e-7, atol=0)
+    turns, _ = column(file, f"/orbit/{name}/journal_um", "Points2D:positions", "milli-revolutions")
+    assert np.array_equal(turns, np.round(1000 * one.angle / (2 * np.pi)).astype(np.int64))
+
+
+def test_series_equal_the_simulated_ones(written):
+    file, what = written
+    one = what.orbits[1]
+    _, rows = column(file, "/series/displacement_um/thd", "Scalars:scalars")
+    np.testing.assert_allclose(np.array(rows), np.stack([one.x, one.y], 1) * 1e6, rtol=1e-15)
+    _, rows = column(file, "/series/eccentricity_ratio/thd", "Scalars:scalars")
+    np.testing.assert_allclose(np.ravel(rows), np.hypot(one.x, one.y) / C, rtol=1e-15)
+    _, rows = column(file, "/series/minimum_film_um/thd", "Scalars:scalars")
+    np.testing.assert_allclose(np.ravel(rows), (C - np.hypot(one.x, one.y)) * 1e6, rtol=1e-12)
+    _, rows = column(file, "/series/speed_rpm/thd", "Scalars:scalars")
+    np.testing.assert_allclose(np.ravel(rows), one.speed * 30 / np.pi, rtol=1e-14)
+
+
+def test_trail_segments_join_the_samples(written):
+    file, what = written
+    one = what.orbits[1]
+    _, rows = column(file, "/orbit/thd/trail_um", "LineStrips2D:strips")
+    segments = np.array([row[0] for row in rows])
+    assert np.array_equal(segments[1:, 0], segments[:-1, 1])
+    np.testing.assert_allclose(segments[:, 1, 0], one.x * 1e6, rtol=2e-7)
+
+
+def test_shaft_is_turned_and_moved(written):
+    file, what = written
+    one, shown = what.orbits[1], what.films[1]
+    _, moves = column(file, "/bearing/thd/journal", "Transform3D:translation")
+    scale = surfaces.exaggeration(shown) * 1e3
+    np.testing.assert_allclose(np.array(moves)[:, 0, 0], one.x * scale, rtol=1e-6)
+    _, turns = column(file, "/bearing/thd/journal", "Transform3D:quaternion")
+    z, w = np.array(turns)[:, 0, 2], np.array(turns)[:, 0, 3]
+    error = np.angle(np.exp(1j * (2 * np.arctan2(z, w) - one.angle)))
+    assert np.abs(error).max() < 1e-5
+
+
+def test_film_colours_and_heights_follow_the_pressure(written):
+    file, _ = written
+    entity = "/bearing/thd/pressure/wrapped/pressure_MPa"
+    rpm, rows = column(file, entity, "Mesh3D:vertex_positions", "speed_rpm")
+    assert rpm.tolist() == [round(s * 30 / np.pi) for s in (800.0, 1200.0)]
+    vertices = np.array(rows)
+    radius = np.hypot(vertices[..., 0], vertices[..., 1]) / 50.0
+    bump = radius - (1 + surfaces.DRAWN_CLEARANCE)
+    assert bump.min() == pytest.approx(0.0, abs=1e-6)
+    assert bump[0].max() / bump[1].max() == pytest.approx(2 / 3, rel=1e-3)
+    assert bump[1].max() == pytest.approx(surfaces.PRESSURE_HEIGHT, rel=0.01)
+    highest = vertices[1][bump[1].argmax()]
+    assert np.degrees(np.arctan2(highest[1], highest[0])) == pytest.approx(0.0, abs=3.1)
+    _, paint = column(file, entity, "Mesh3D:vertex_colors", "speed_rpm")
+    brightest = np.array(paint[1])[bump[1].argmax()]
+    assert [(int(brightest) >> s) & 255 for s in (24, 16, 8)] == pytest.approx(
+        [253, 231, 37], abs=3
+    )
+
+
+def test_isothermal_film_has_no_temperature_picture(written):
+    entities = {
+        str(c.entity_path) for c in RrdReader(written[0]).store().schema().component_columns()
+    }
+    assert any(e.startswith("/bearing/thd/temperature") for e in entities)
+    assert not any(e.startswith("/bearing/isothermal/temperature") for e in entities)
+    for unit in ("_um", "_MPa", "_degC", "_rpm", "_N", "_mm", "_per_s"):
+        assert any(unit in e for e in entities), unit
+
+
+def test_a_recording_of_orbits_only_and_an_empty_one(tmp_path):
+    write_recording(tmp_path / "a.rrd", RecordingContents("t", orbits=(track(),)))
+    write_recording(tmp_path / "b.rrd", RecordingContents("t"))
+    assert (tmp_path / "a.rrd").stat().st_size > (tmp_path / "b.rrd").stat().st_size > 0
+
+
+def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
+    file = tmp_path / "x.rrd"
+    file.write_bytes(b"old")
+
+    def fail(*_):
+        raise RuntimeError("stop")
+
+    monkeypatch.setattr("rotorsim.recording.write.log_contents", fail)
+    with pytest.raises(RuntimeError):
+        write_recording(file, contents())
+    assert file.read_bytes() == b"old"
+    assert [p.name for p in tmp_path.iterdir()] == ["x.rrd"]
+
+
+def test_film_frames_follow_the_speed_of_a_run_up():
+    rows, frames = frame_rows(track(speed=(100.0, 1000.0)), np.array([100.0, 400.0, 900.0]))
+    assert frames.tolist() == [0, 1, 2]
+    assert np.interp(rows, [0, 3000], [100.0, 1000.0]) == pytest.approx([100, 250, 650], abs=1)
+
+
+def test_display_grid_reproduces_a_smooth_field():
+    shown = film()
+    grid = surfaces.display_grid(shown)
+    values = np.cos(shown.theta)[:, None] + 0 * shown.y
+    found = surfaces.on_display_grid(shown, values, at_ends=None)
+    assert np.abs(found - np.cos(grid.theta)[:, None]).max() < 2e-3
+    assert np.array_equal(found[0], found[-1])
+    ends = surfaces.on_display_grid(shown, shown.pressure, at_ends=0.0)
+    assert np.all(ends[:, [0, -1]] == 0.0)
+
+
+def test_whirl_ratio_of_a_known_whirl():
+    forward = whirl_ratio(track(whirl=0.48))
+    assert forward == pytest.approx(0.48, abs=1e-9)
+    assert whirl_ratio(track(whirl=-1.0)) == pytest.approx(-1.0, abs=1e-9)
+
+
+def test_envelope_keeps_the_extremes():
+    values = np.sin(np.arange(100_000) * 0.37)
+    values[54_321] = 9.0
+    rows = envelope_rows(values, 2_000)
+    assert rows.size <= 2_002
+    assert 54_321 in rows
+    assert rows[0] == 0
+    assert rows[-1] == values.size - 1
+    assert np.all(np.diff(rows) > 0)
+
+
+def test_thinning_keeps_the_end():
+    rows = thin(1_000_003, 1000)
+    assert rows[0] == 0
+    assert rows[-1] == 1_000_002
+    assert rows.size <= 1001
+
+
+def test_classification():
+    verdict = classify([1.0, 1.0, -1.0, -1.0, np.nan], [1.0, -1.0, -1.0, 1.0, 1.0])
+    expected = [
+        Verdict.STABLE,
+        Verdict.HEATING_DESTABILISES,
+        Verdict.UNSTABLE,
+        Verdict.HEATING_STABILISES,
+        Verdict.UNKNOWN,
+    ]
+    assert verdict.tolist() == expected
+
+
+def test_map_pixels_stand_the_right_way_up():
+    picture = contents().maps[0]
+    pixels = verdict_pixels(picture)
+    corners = pixels[[-1, -1, 0, 0], [0, -1, 0, -1]]
+    assert corners.tolist() == picture.verdict[[0, -1, 0, -1], [0, 0, -1, -1]].tolist()
+    coarse = MapPicture("c", picture.speed, picture.mass, picture.verdict)
+    assert np.mean(verdict_pixels(coarse) == pixels) > 0.95
+    amplitude = np.arange(12.0)[:, None] * np.ones(9)
+    assert raster(amplitude, picture.speed, picture.mass)[0, -1] == 11.0
+
+
+def test_colour_scale_ends_and_unknown():
+    found = colours([-1.0, 0.0, 1.0, 2.0, np.nan], 0.0, 1.0)
+    assert found[0].tolist() == found[1].tolist() == [0x44, 0x01, 0x54, 255]
+    assert found[2].tolist() == found[3].tolist() == [0xFD, 0xE7, 0x25, 255]
+    assert found[4].tolist() == [128, 128, 128, 255]
+
+
+def test_ticks_are_round():
+    assert nice_ticks(0.0, 15000.0, 4).tolist() == [0.0, 5000.0, 10000.0, 15000.0]
+
+
+@pytest.mark.parametrize("key", ["x", "speed", "force"])
+def test_lengths_that_differ_are_named(key):
+    good = track()
+    values = {**good.__dict__, key: getattr(good, key)[:-1]}
+    with pytest.raises(InputError, match=key):
+        OrbitTrack(**values)
+
+
+def test_viewer_without_display_or_file(tmp_path, monkeypatch):
+    with pytest.raises(InputError, match=r"no such recording"):
+        open_viewer(tmp_path / "none.rrd")
+    file = tmp_path / "a.rrd"
+    file.write_bytes(b"")
+    monkeypatch.setattr(viewer, "has_display", lambda: False)
+    launch = open_viewer(file)
+    assert not launch.started
+    assert launch.exit_code == 1
+    assert "no display" in launch.message
+
+
+def test_importing_the_recording_leaves_rerun_alone():
+    code = "import sys, rotorsim.recording; assert 'rerun' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True, env=dict(os.environ))
+
+
+def test_half_a_million_samples_take_seconds(tmp_path):
+    long = track(count=500_001)
+    start = time.perf_counter()
+    file = write_recording(tmp_path / "long.rrd", RecordingContents("t", orbits=(long,)))
+    assert time.perf_counter() - start < 10.0
+    assert file.stat().st_size < 60e6
