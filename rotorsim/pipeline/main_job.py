@@ -19,6 +19,7 @@ from .summary import describe_orbit, expected_growth, heating_effect
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
     from ..orbit import Orbit
+    from ..recording import FilmSurface
     from ..scenario import Scenario
     from ..stability.map import StabilityMap
     from ..table import CoefficientTable
@@ -44,8 +45,8 @@ class Results:
     chart : StabilityMap or None
     orbits : tuple of Orbit
         Each thermal model at constant speed, then each through the run-up.
-    films : tuple of OperatingPoint
-        With fields, in the orbit's clearance, ascending speed for each thermal model.
+    films : tuple of FilmSurface
+        In the orbit's clearance, ascending speed for each thermal model.
     problems : tuple of str
         What went wrong, where, and what to do.
     """
@@ -56,7 +57,7 @@ class Results:
     curves: tuple[StabilityCurve, ...] = ()
     chart: StabilityMap | None = None
     orbits: tuple[Orbit, ...] = ()
-    films: tuple[OperatingPoint, ...] = ()
+    films: tuple[FilmSurface, ...] = ()
     problems: tuple[str, ...] = ()
 
     @property
@@ -64,6 +65,22 @@ class Results:
         """Per bearing [kg]; None without a rotor."""
         rotor = self.scenario.rotor
         return None if rotor is None else rotor.mass
+
+    @property
+    def shown_curves(self) -> list[StabilityCurve]:
+        """Curves in the orbit's clearance; without an orbit, in the first one."""
+        settings = self.scenario.orbit
+        wanted = settings.radial_clearance if settings else self.scenario.radial_clearances[0]
+        return [
+            curve
+            for curve in self.curves
+            if np.isclose(curve.choices["radial_clearance"], wanted, rtol=1e-6, atol=0.0)
+        ]
+
+    @property
+    def films_at_top_speed(self) -> list[FilmSurface]:
+        """Last film of each thermal model."""
+        return list({film.name: film for film in self.films}.values())
 
 
 @dataclass
@@ -100,7 +117,7 @@ def compute(
     curves = attempt("critical mass and eigenvalues", lambda: stability_curves(table, mass), [])
     chart = attempt("stability map", lambda: map_of(scenario, table), None)
     orbits: list[Orbit] = []
-    films: list[OperatingPoint] = []
+    films: list[FilmSurface] = []
     if scenario.orbit is not None:
         settings, _ = orbit_steps.orbit_settings(scenario)
         ramped = isinstance(settings.speed, SpeedRamp)
@@ -167,8 +184,9 @@ def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
     return stability_map(table, np.linspace(0.05, 3.0, MAP_CELLS) * middle, speeds)
 
 
-def film_frames(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
-    """Film with fields over the speeds, for each thermal model; each warm-starts the next."""
+def film_frames(scenario: Scenario, clearance: float) -> list[FilmSurface]:
+    """Film over the speeds, for each thermal model; each warm-starts the next."""
+    from ..recording import FilmSurface
     from ..solver import solve_case
 
     count = min(len(scenario.speeds), FILM_FRAMES)
@@ -179,7 +197,8 @@ def film_frames(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
         for speed in scenario.speeds[chosen]:
             point, warm = solve_case(case, float(speed), initial=warm, keep_fields=True)
             if point.converged:
-                frames.append(point)
+                radius = case.bearing.journal_radius
+                frames.append(FilmSurface.from_operating_point(point, radius))
             else:
                 warm = None
     return frames

@@ -44,7 +44,8 @@ def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
     tracks: list[OrbitTrack] = []
     for orbit in orbits:
         constant = np.ptp(orbit.speed) <= 1e-9 * abs(orbit.speed[0])
-        base = orbit.thermal_model if constant else f"{orbit.thermal_model}_run_up"
+        run = "run_up" if orbit.speed[-1] > orbit.speed[0] else "coast_down"
+        base = orbit.thermal_model if constant else f"{orbit.thermal_model}_{run}"
         taken = [track.name for track in tracks]
         name, number = base, 2
         while name in taken:
@@ -60,10 +61,15 @@ def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
                 radial_clearance=orbit.radial_clearance,
                 equilibrium=np.asarray(orbit.equilibrium),
                 force=np.column_stack([orbit.fx, orbit.fy]),
-                title=name.replace("_", " "),
+                title=_heading(name),
             )
         )
     return tracks
+
+
+def _heading(name: str) -> str:
+    words = name.replace("_", " ").replace("run up", "run-up").replace("coast down", "coast-down")
+    return words.replace("thd", "THD")
 
 
 def eigenvalue_path(curve: StabilityCurve, name: str) -> EigenvaluePath | None:

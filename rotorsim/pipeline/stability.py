@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from ..stability.map import StabilityMap
     from ..table import CoefficientTable
 
 Array = NDArray[np.float64]
@@ -55,6 +56,53 @@ class StabilityCurve:
     def decay_rate(self) -> Array | None:
         """Of the slowest mode, above 0 where the motion dies out [1/s]; None without a rotor."""
         return None if self.eigenvalues is None else -self.eigenvalues[:, 0].real
+
+
+@dataclass(frozen=True)
+class MapPlane:
+    """Stability map of one clearance: decay rates over speed and mass.
+
+    Attributes
+    ----------
+    radial_clearance : float
+        [m]
+    speed : (n,) array
+        [rad/s]
+    mass : (m,) array
+        Per bearing [kg].
+    isothermal_decay, heated_decay : (n, m) arrays
+        Above 0 where the motion dies out, NaN where unknown [1/s]. With one thermal model in the
+        table both are its.
+    """
+
+    radial_clearance: float
+    speed: Array
+    mass: Array
+    isothermal_decay: Array
+    heated_decay: Array
+
+
+def map_planes(chart: StabilityMap) -> list[MapPlane]:
+    """Planes of a map, one for each clearance."""
+    dataset = chart.dataset
+    models = [str(model) for model in dataset["thermal_model"].values]
+    cold = models.index("isothermal") if "isothermal" in models else 0
+    hot = models.index("thd") if "thd" in models else len(models) - 1
+    planes = []
+    for place, clearance in enumerate(dataset["radial_clearance"].values):
+        # The map's rate is the largest real part: of growth.
+        rate = dataset["decay_rate"].isel(radial_clearance=place)
+        decay = -rate.transpose("thermal_model", "speed", "mass").values
+        planes.append(
+            MapPlane(
+                radial_clearance=float(clearance),
+                speed=dataset["speed"].values,
+                mass=dataset["mass"].values,
+                isothermal_decay=decay[cold],
+                heated_decay=decay[hot],
+            )
+        )
+    return planes
 
 
 def stability_curves(table: CoefficientTable, mass: float | None = None) -> list[StabilityCurve]:

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .figures import write_figures
 from .main_job import Announce, Attempts, Results, summary
 from .recordings import eigenvalue_path, orbit_tracks
+from .stability import map_planes
 
 if TYPE_CHECKING:
     from ..recording import MapPicture, RecordingContents
@@ -48,22 +50,17 @@ def write_recording_of(results: Results, path: Path) -> Path:
 
 def recording_contents(results: Results) -> RecordingContents:
     """Everything that the recording shows."""
-    from ..recording import FilmSurface, RecordingContents
+    from ..recording import RecordingContents
 
-    radius = results.scenario.bearing.journal_radius
-    settings = results.scenario.orbit
-    clearance = settings.radial_clearance if settings else results.scenario.radial_clearances[0]
-    shown = [
-        curve
-        for curve in results.curves
-        if np.isclose(curve.choices["radial_clearance"], clearance, rtol=1e-6, atol=0.0)
+    paths = [
+        eigenvalue_path(curve, str(curve.choices["thermal_model"]))
+        for curve in results.shown_curves
     ]
-    paths = [eigenvalue_path(curve, str(curve.choices["thermal_model"])) for curve in shown]
     return RecordingContents(
         title=results.scenario.title,
         summary=markdown_summary(results),
         orbits=tuple(orbit_tracks(results.orbits)),
-        films=tuple(FilmSurface.from_operating_point(point, radius) for point in results.films),
+        films=results.films,
         eigenvalues=tuple(path for path in paths if path is not None),
         maps=tuple(map_pictures(results)),
     )
@@ -75,32 +72,18 @@ def map_pictures(results: Results) -> list[MapPicture]:
 
     if results.chart is None:
         return []
-    dataset = results.chart.dataset
-    models = [str(model) for model in dataset["thermal_model"].values]
-    cold = models.index("isothermal") if "isothermal" in models else 0
-    hot = models.index("thd") if "thd" in models else len(models) - 1
-    pictures = []
-    for clearance in dataset["radial_clearance"].values:
-        # The map's rate is of growth, the picture's of decay.
-        decay = -dataset["decay_rate"].sel(radial_clearance=clearance)
-        decay = decay.transpose("thermal_model", "speed", "mass").values
-        pictures.append(
-            MapPicture(
-                title=f"c = {clearance * 1e6:.4g} um",
-                speed=dataset["speed"].values,
-                mass=dataset["mass"].values,
-                verdict=classify(decay[cold], decay[hot]),
-                isothermal_decay=decay[cold],
-                heated_decay=decay[hot],
-                rotor_mass=results.rotor_mass,
-            )
+    return [
+        MapPicture(
+            title=f"c = {plane.radial_clearance * 1e6:.4g} um",
+            speed=plane.speed,
+            mass=plane.mass,
+            verdict=classify(plane.isothermal_decay, plane.heated_decay),
+            rotor_mass=results.rotor_mass,
+            isothermal_decay=plane.isothermal_decay,
+            heated_decay=plane.heated_decay,
         )
-    return pictures
-
-
-def write_figures(results: Results, folder: Path) -> list[Path]:
-    """Write the figures (PNG)."""
-    raise NotImplementedError
+        for plane in map_planes(results.chart)
+    ]
 
 
 def markdown_summary(results: Results) -> str:
