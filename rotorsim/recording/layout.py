@@ -65,10 +65,8 @@ def _playback_speed(contents: RecordingContents) -> float | None:
     return float(f"{REVOLUTIONS_PER_SECOND * 2.0 * np.pi / max(fastest, 1e-9):.1g}")
 
 
-def _summary_view(contents: RecordingContents) -> list[Part]:
-    return (
-        [rrb.TextDocumentView(origin="/summary", name="What is seen")] if contents.summary else []
-    )
+def _summary_view() -> rrb.View:
+    return rrb.TextDocumentView(origin="/summary", name="What is seen")
 
 
 def _groups(contents: RecordingContents) -> list[tuple[str, list[OrbitTrack]]]:
@@ -107,12 +105,12 @@ def _map_views(contents: RecordingContents) -> list[Part]:
     return [map_view.map_view(picture, i) for i, picture in enumerate(contents.maps)]
 
 
-def _overview(contents: RecordingContents) -> Part | None:
+def _overview(contents: RecordingContents) -> Part:
     middle: list[Part] = _film_views(contents, flat=False)[-2:]
     stability = _map_views(contents)[:1]
     if contents.eigenvalues:
         stability.append(eigenvalue_view())
-    right: list[Part] = [*_summary_view(contents)]
+    right: list[Part] = [_summary_view()]
     if stability:
         right.append(rrb.Tabs(*stability) if len(stability) > 1 else stability[0])
     columns: list[Part] = []
@@ -124,7 +122,7 @@ def _overview(contents: RecordingContents) -> Part | None:
         if parts:
             columns.append(rrb.Vertical(*parts, row_shares=[1.0] * len(parts)))
             widths.append(width)
-    return rrb.Horizontal(*columns, column_shares=widths, name="Overview") if columns else None
+    return rrb.Horizontal(*columns, column_shares=widths, name="Overview")
 
 
 def _orbits_and_eccentricity(tracks: list[OrbitTrack]) -> Part:

@@ -57,10 +57,8 @@ def write_recording(
 
 def log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> None:
     """Write everything to an open stream (a file's, or a running viewer's)."""
-    if contents.summary:
-        text = f"# {contents.title}\n\n{contents.summary}{_notes(contents)}"
-        document = rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN)
-        stream.log("summary", document, static=True)
+    text = f"# {contents.title}\n\n{contents.summary}{_notes(contents)}"
+    stream.log("summary", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
     for track in contents.orbits:
         log_orbit(stream, track)
         log_series(stream, track)
