@@ -55,7 +55,7 @@ def _solver(factor: Array, right: Array) -> tuple[Array, int]:
 
 def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
     """Factor the conductance matrix restricted to the `active` cells."""
-    order, folded = _column_order(operator.linked, active)
+    order, folded = column_order(operator.linked, active)
     n, m = active.shape
     width = (2 * m if folded else m) if order.size > 1 else m - 1
     width = min(width, order.size * m - 1)
@@ -69,7 +69,7 @@ def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
     return FilmFactor(factor=factor, order=order, active=active)
 
 
-def _column_order(linked: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
+def column_order(linked: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
     """Columns in band order, and whether the ring had to be folded."""
     n = active.shape[0]
     used = active.any(axis=1)

@@ -8,12 +8,13 @@ finitely many steps, since the matrix is an M-matrix.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..model import Cavitation
-from .banded import FilmFactor, factor_operator
+from .banded import factor_operator
 from .kernels import kernel
 from .operator import FilmOperator
 
@@ -21,6 +22,14 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_ACTIVE_SET_STEPS = 80
+
+
+class Factor(Protocol):
+    """A factored film matrix."""
+
+    def solve(self, right: Array) -> Array:
+        """Solve for (..., n, m) right-hand sides [m3/s]."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -35,19 +44,25 @@ class PressureSolution:
         Before negative pressures are dropped (``half_sommerfeld``); else the same.
     full : (n, m) bool array
         Cells whose continuity the pressure solves.
-    factor : FilmFactor
+    factor : Factor
         Of the matrix on those cells, for further right-hand sides.
     steps : int
         Linear solves.
     converged : bool
+    liquid : (n, m) array or None
+        Liquid fraction, where the rupture model gives it (``jfo``).
+    violations : int
+        Cells that break the rupture condition because their state was held.
     """
 
     pressure: Array
     raw: Array
     full: Flags
-    factor: FilmFactor
+    factor: Factor
     steps: int
     converged: bool
+    liquid: Array | None = None
+    violations: int = 0
 
 
 def solve_pressure(
@@ -57,6 +72,7 @@ def solve_pressure(
     squeeze: Array | None = None,
     start: Flags | None = None,
     region: NDArray[np.int64] | None = None,
+    frozen: Flags | None = None,
 ) -> PressureSolution:
     """Pressure for the operator's film.
 
@@ -71,6 +87,8 @@ def solve_pressure(
         full stretch per region besides those fed by a groove under pressure: a ruptured film then
         stays ruptured up to the next inception. Thermal films need it, since the derivative of
         F1/F0 could otherwise re-form film inside the ruptured sector.
+    frozen : (n, m) bool array, optional
+        The full cells, taken as given: one linear solve, `violations` telling what it leaves.
     """
     source = source_term(operator, squeeze)
     film = ~operator.held
@@ -79,8 +97,11 @@ def solve_pressure(
         pressure = _with_held(operator, factor.solve(source))
         if cavitation is Cavitation.HALF_SOMMERFELD:
             kept = np.where(operator.held, pressure, np.maximum(pressure, 0.0))
-            return PressureSolution(kept, pressure, film & (kept > 0.0), factor, 1, True)
+            full = film & (kept > 0.0) if frozen is None else frozen
+            return PressureSolution(kept, pressure, full, factor, 1, True)
         return PressureSolution(pressure, pressure, film, factor, 1, True)
+    if frozen is not None:
+        return _on_frozen_set(operator, source, frozen)
     solution = _active_set(operator, source, film, film if start is None else start & film)
     if region is None:
         return solution
@@ -140,6 +161,19 @@ def _active_set(
         return PressureSolution(nothing, nothing, empty, factor, steps, True)
     pressure = _with_held(operator, pressure)
     return PressureSolution(pressure, pressure, full, factor, steps, converged)
+
+
+def _on_frozen_set(operator: FilmOperator, source: Array, full: Flags) -> PressureSolution:
+    factor = factor_operator(operator, full)
+    pressure = factor.solve(source)
+    update = np.empty_like(full)
+    tolerance = 1e-13 * float(np.abs(source).max())
+    violations = _update_set(
+        operator.conductance, operator.linked, source, pressure, full, full, tolerance, update
+    )
+    raw = _with_held(operator, pressure)
+    kept = np.maximum(raw, 0.0)
+    return PressureSolution(kept, raw, full, factor, 1, True, violations=int(violations))
 
 
 @kernel

@@ -49,6 +49,9 @@ class EnergyProblem:
     layers : LayerIntegrals
     heating : (3, n, m) array
         Multipliers of the three parts of the dissipation of a layer (see `dissipation`).
+    carried : (n, m) array
+        Part of the oil entering through the west face that comes from the column before; the rest
+        has the inlet's temperature.
     conductance : (n, m) array
         k (liquid area)/(h dz): between neighbouring layers [W/K].
     heat_capacity : float
@@ -66,6 +69,7 @@ class EnergyProblem:
     flow: FilmFlow
     layers: LayerIntegrals
     heating: Array
+    carried: Array
     conductance: Array
     heat_capacity: float
     order: NDArray[np.int64]
@@ -136,8 +140,9 @@ def march(
     *,
     passes: int = 1,
     source: Array | None = None,
-) -> float:
-    """Solve for the temperature in place; return the last pass's largest change [K].
+    leaving: Array | None = None,
+) -> tuple[float, Array]:
+    """Solve for the temperature in place.
 
     Parameters
     ----------
@@ -151,62 +156,70 @@ def march(
         Sweeps; one is exact where nothing flows back.
     source : (n, m, k) array, optional
         Further heat [W] (manufactured solutions).
+    leaving : (2, n, m, k) array, optional
+        What a march over a neighbouring field returned; needed where a cell is visited before the
+        one upstream of it, overwritten.
+
+    Returns
+    -------
+    float
+        The last pass's largest change [K].
+    (2, n, m, k) array
+        Temperature of the oil that leaves each layer along the film and along the axis [K].
     """
     change = 0.0
     flow, layers = problem.flow, problem.layers
     extra = np.zeros((1, 1, 1)) if source is None else source
+    # Temperature of the oil that leaves each cell along the film and along the axis.
+    if leaving is None:
+        leaving = np.stack([temperature, temperature])
     for _ in range(passes):
         change = _sweep(
-            flow.drive, flow.drag, flow.shared, flow.inlet, layers.pressure_share,
+            flow.drive, flow.drag, flow.shared, flow.inlet, problem.carried,
+            layers.pressure_share,
             layers.shear_share, layers.g, viscosity, problem.heating, problem.conductance,
             problem.heat_capacity, problem.order, problem.axial_order, problem.held,
             problem.linked, problem.dx, problem.dy, walls.bush, walls.shaft, walls.bush_insulated,
-            inlet_temperature, extra, temperature,
+            inlet_temperature, extra, temperature, leaving,
         )  # fmt: skip
-    return change
+    return change, leaving
 
 
 @kernel
 def _sweep(
-    drive, drag, shared, inlet, pressure_share, shear_share, g, viscosity, heating, conductance,
-    heat_capacity, order, axial_order, held, linked, dx, dy, bush, shaft, bush_insulated,
-    inlet_temperature, extra, temperature,
+    drive, drag, shared, inlet, carried, pressure_share, shear_share, g, viscosity, heating,
+    conductance, heat_capacity, order, axial_order, held, linked, dx, dy, bush, shaft,
+    bush_insulated, inlet_temperature, extra, temperature, leaving,
 ):  # fmt: skip
     n, m, layers = temperature.shape
     dz = 1.0 / layers
     lower, diagonal = np.empty(layers), np.empty(layers)
     upper, right = np.empty(layers), np.empty(layers)
+    slope = np.empty(2 * layers)
     largest = 0.0
     with_extra = extra.shape[0] == n
     for c in range(n):
         i = order[c]
         before = i - 1 if i > 0 else n - 1
-        twice = before - 1 if before > 0 else n - 1
         after = i + 1 if i < n - 1 else 0
         for s in range(m):
             j = axial_order[s]
             if held[i, j]:
                 continue
             south, north = max(j - 1, 0), min(j + 1, m - 1)
-            # Second order where the cell upstream is joined to this one; weights of the
-            # extrapolation from centre to face.
-            own_w = 0.0
+            # Weights of the extrapolation from centre to the face downstream, where this cell and
+            # the one upstream are joined.
+            along_w, south_w, north_w = 0.0, 0.0, 0.0
             if linked[0, i, j] and not inlet[i, j]:
-                own_w = dx[i] / (dx[i] + dx[before])
-            west_w = 0.0
-            if own_w > 0.0 and linked[0, before, j] and not inlet[before, j]:
-                west_w = dx[before] / (dx[before] + dx[twice])
-            south_w = dy[j] / (dy[j] + dy[south]) if linked[2, i, j] else 0.0
-            north_w = dy[j] / (dy[j] + dy[north]) if linked[3, i, j] else 0.0
-            in_s_w, in_n_w = 0.0, 0.0
-            if linked[2, i, j] and linked[2, i, south]:
-                in_s_w = dy[south] / (dy[south] + dy[south - 1])
-            if linked[3, i, j] and linked[3, i, north]:
-                in_n_w = dy[north] / (dy[north] + dy[north + 1])
+                along_w = dx[i] / (dx[i] + dx[before])
+            if linked[2, i, j]:
+                south_w = dy[j] / (dy[j] + dy[south])
+            if linked[3, i, j]:
+                north_w = dy[j] / (dy[j] + dy[north])
             g_w, g_e = drive[0, i, j], drive[1, i, j]
             g_s, g_n = drive[2, i, j], drive[3, i, j]
             c_w, c_e = drag[0, i, j], drag[1, i, j]
-            carried_w = (not shared[0, i, j]) and linked[0, i, j]
+            passed_w = (not shared[0, i, j]) and linked[0, i, j]
             kz = conductance[i, j]
             rising = 0.0
             ratio = g[i, j]
@@ -217,7 +230,7 @@ def _sweep(
                         g_w * (a_own + pressure_share[before, j, k])
                         + c_w * (b_own + shear_share[before, j, k])
                     )
-                elif carried_w:
+                elif passed_w:
                     q_w = c_w * shear_share[before, j, k]
                 else:
                     q_w = g_w * a_own + c_w * b_own
@@ -239,47 +252,52 @@ def _sweep(
                 q_s *= heat_capacity
                 q_n *= heat_capacity
                 center, rhs = 0.0, 0.0
+                ahead, ahead_from = 0.0, 0.0
+                aside, aside_from = 0.0, 0.0
                 if q_w > 0.0:
                     center += q_w
-                    if inlet[i, j]:
-                        rhs += q_w * inlet_temperature[0, i, j, k]
-                    else:
-                        t_w = temperature[before, j, k]
-                        rhs += q_w * (t_w + west_w * (t_w - temperature[twice, j, k]))
-                if q_e > 0.0:
-                    if own_w > 0.0:
-                        center += q_e * own_w
-                        rhs += q_e * own_w * temperature[before, j, k]
-                else:
+                    part = carried[i, j]
+                    if part > 0.0:
+                        rhs += q_w * part * leaving[0, before, j, k]
+                    if part < 1.0:
+                        rhs += q_w * (1.0 - part) * inlet_temperature[0, i, j, k]
+                if q_e <= 0.0:
                     center -= q_e
                     if linked[1, i, j]:
                         rhs -= q_e * temperature[after, j, k]
                     else:
                         rhs -= q_e * inlet_temperature[1, i, j, k]
+                elif q_w > 0.0:
+                    # The weight fades with what enters from upstream: no jump where flow turns.
+                    ahead = along_w * min(1.0, q_w / q_e)
+                    ahead_from = temperature[before, j, k]
+                    center += q_e * ahead
+                    rhs += q_e * ahead * ahead_from
                 if q_s > 0.0:
                     center += q_s
                     if linked[2, i, j]:
-                        t_s = temperature[i, south, k]
-                        if in_s_w > 0.0:
-                            t_s += in_s_w * (t_s - temperature[i, south - 1, k])
-                        rhs += q_s * t_s
+                        rhs += q_s * leaving[1, i, south, k]
                     else:
                         rhs += q_s * inlet_temperature[2, i, j, k]
-                elif north_w > 0.0:
-                    center -= q_s * north_w
-                    rhs -= q_s * north_w * temperature[i, north, k]
+                    if q_n > 0.0:
+                        aside = south_w * min(1.0, q_s / q_n)
+                        aside_from = temperature[i, south, k]
+                        center += q_n * aside
+                        rhs += q_n * aside * aside_from
                 if q_n < 0.0:
                     center -= q_n
                     if linked[3, i, j]:
-                        t_n = temperature[i, north, k]
-                        if in_n_w > 0.0:
-                            t_n += in_n_w * (t_n - temperature[i, north + 1, k])
-                        rhs -= q_n * t_n
+                        rhs -= q_n * leaving[1, i, north, k]
                     else:
                         rhs -= q_n * inlet_temperature[3, i, j, k]
-                elif south_w > 0.0:
-                    center += q_n * south_w
-                    rhs += q_n * south_w * temperature[i, south, k]
+                    if q_s < 0.0:
+                        aside = north_w * min(1.0, q_n / q_s)
+                        aside_from = temperature[i, north, k]
+                        center -= q_s * aside
+                        rhs -= q_s * aside * aside_from
+                # Kept until the column is solved: face value = T + w (T - T_from).
+                leaving[0, i, j, k], slope[k] = ahead, ahead_from
+                leaving[1, i, j, k], slope[layers + k] = aside, aside_from
                 # dissipation in the layer
                 fluidity = 1.0 / viscosity[i, j, k]
                 z0 = k * dz - ratio
@@ -314,11 +332,14 @@ def _sweep(
                 factor = lower[k] / diagonal[k - 1]
                 diagonal[k] -= factor * upper[k - 1]
                 right[k] -= factor * right[k - 1]
-            value = right[layers - 1] / diagonal[layers - 1]
-            largest = max(largest, abs(value - temperature[i, j, layers - 1]))
-            temperature[i, j, layers - 1] = value
-            for k in range(layers - 2, -1, -1):
-                value = (right[k] - upper[k] * value) / diagonal[k]
+            value = 0.0
+            for k in range(layers - 1, -1, -1):
+                above = upper[k] * value if k < layers - 1 else 0.0
+                value = (right[k] - above) / diagonal[k]
                 largest = max(largest, abs(value - temperature[i, j, k]))
                 temperature[i, j, k] = value
+                weight = leaving[0, i, j, k]
+                leaving[0, i, j, k] = value + weight * (value - slope[k])
+                weight = leaving[1, i, j, k]
+                leaving[1, i, j, k] = value + weight * (value - slope[layers + k])
     return largest

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .linearized import linearize
-from .problem import FilmState
+from .state import FilmState
 
 Array = NDArray[np.float64]
 Position = tuple[float, float]
@@ -123,7 +123,7 @@ def _newton_step(stiffness: Array, missing: Array, clearance: float) -> Array:
         step = missing / max(float(np.abs(stiffness).max()), 1e-300)
     if not np.all(np.isfinite(step)):
         step = np.array([0.1 * clearance, 0.0])
-    return step
+    return np.asarray(step, dtype=float)
 
 
 def _pair(position: Array) -> Position:

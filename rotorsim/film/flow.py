@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .geometry import Thickness
 from .kernels import kernel
 from .layers import LayerIntegrals
 from .operator import FilmOperator
+from .state import FilmState
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -54,36 +54,48 @@ class FilmFlow:
     liquid_fraction: Array
 
 
-def film_flow(
-    operator: FilmOperator,
-    film: Thickness,
-    layers: LayerIntegrals,
-    pressure: Array,
-    full: Flags,
-    surface_speed: float,
-) -> FilmFlow:
-    """Fluxes of the pressure `pressure`, whose continuity holds in the `full` cells."""
+def film_flow(state: FilmState, surface_speed: float) -> FilmFlow:
+    """Fluxes of the film `state`."""
+    operator, layers, solution = state.operator, state.layers, state.solution
     shape = operator.linked.shape
     step, drive, flux = np.zeros(shape), np.zeros(shape), np.zeros(shape)
     drag = np.zeros((2, *shape[1:]))
     shared = np.zeros(shape, dtype=bool)
     inlet = np.zeros(shape[1:], dtype=bool)
-    fraction = np.ones(shape[1:])
-    _trace(
+    _pressure_part(
         operator.conductance, operator.linked, operator.outer_pressure, operator.face_thickness,
-        operator.drag, operator.gap, operator.held, film.center, layers.f2, layers.g, pressure,
-        full, surface_speed, operator.dx, operator.dy, step, drive, drag, shared, inlet, flux,
-        fraction,
+        operator.gap, operator.held, solution.full, solution.raw, operator.dx, operator.dy, step,
+        drive, shared, flux,
+    )  # fmt: skip
+    if solution.liquid is not None:
+        # The rupture model conserves oil by itself: drag carries its liquid fraction everywhere.
+        film = ~operator.held
+        drag = _drag_multiplier(operator, layers) * film
+        flux[:2] += operator.drag * film
+        inlet = ~operator.linked[0] & film
+        return FilmFlow(step, drive, drag, shared, inlet, flux, solution.liquid)
+    fraction = np.ones(shape[1:])
+    _carry(
+        operator.linked, operator.face_thickness, operator.drag, operator.held,
+        state.thickness.center, layers.g, solution.full, surface_speed, operator.dy, drive, drag,
+        shared, inlet, flux, fraction,
     )  # fmt: skip
     return FilmFlow(step, drive, drag, shared, inlet, flux, fraction)
 
 
+def _drag_multiplier(operator: FilmOperator, layers: LayerIntegrals) -> Array:
+    """C of the west and east faces: their drag over the shear shares that it is spread on."""
+    share = 1.0 - layers.g
+    beside = np.stack([np.roll(share, 1, axis=0), np.roll(share, -1, axis=0)])
+    return operator.drag / np.where(operator.linked[:2], 0.5 * (share + beside), share)
+
+
 @kernel
-def _trace(
-    conductance, linked, outer, face_h, operator_drag, gap, held, h, f2, g, pressure, full, speed,
-    dx, dy, steps, drive, drag, shared, inlet, flux, fraction,
+def _pressure_part(
+    conductance, linked, outer, face_h, gap, held, full, pressure, dx, dy, steps, drive, shared,
+    flux,
 ):  # fmt: skip
-    n, m = full.shape
+    n, m = pressure.shape
     for i in range(n):  # pressure-driven part of every face
         before = i - 1 if i > 0 else n - 1
         after = i + 1 if i < n - 1 else 0
@@ -93,21 +105,34 @@ def _trace(
             for face in range(4):
                 sign = 1.0 if face == 1 or face == 3 else -1.0
                 width = dy[j] if face < 2 else dx[i]
-                if not linked[face, i, j]:
-                    other = outer[face, i, j]
-                elif face == 0:
-                    other = pressure[before, j]
+                k, q = i, j
+                if face == 0:
+                    k = before
                 elif face == 1:
-                    other = pressure[after, j]
+                    k = after
                 elif face == 2:
-                    other = pressure[i, j - 1]
+                    q = max(j - 1, 0)
                 else:
-                    other = pressure[i, j + 1]
-                step = sign * (other - pressure[i, j])
+                    q = min(j + 1, m - 1)
+                if not linked[face, i, j]:
+                    inside = pressure[i, j] if full[i, j] else 0.0
+                    step = sign * (outer[face, i, j] - inside)
+                elif full[i, j] or full[k, q]:
+                    step = sign * (pressure[k, q] - pressure[i, j])
+                else:
+                    step = 0.0
                 steps[face, i, j] = step
                 shared[face, i, j] = linked[face, i, j]
                 drive[face, i, j] = face_h[face, i, j] ** 3 * step * width / gap[face, i, j]
                 flux[face, i, j] = -conductance[face, i, j] * step
+
+
+@kernel
+def _carry(
+    linked, face_h, operator_drag, held, h, g, full, speed, dy, drive, drag, shared, inlet, flux,
+    fraction,
+):  # fmt: skip
+    n, m = full.shape
     for j in range(m):
         start = 0
         for i in range(n):  # begin where what enters is known

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from ..model import BushModel, InletModel, ShaftModel, ThermalSettings
 from .energy import EnergyProblem, WallTemperatures, dissipation
 from .flow import FilmFlow, film_flow
-from .problem import FilmProblem, FilmState
+from .problem import FilmProblem
+from .state import FilmState
 
 Array = NDArray[np.float64]
 
@@ -27,10 +28,7 @@ class HeatTotals:
 
 def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
     """The energy equation of the film `state`."""
-    flow = film_flow(
-        state.operator, state.thickness, state.layers, state.solution.pressure,
-        state.solution.full, problem.surface_speed,
-    )  # fmt: skip
+    flow = film_flow(state, problem.surface_speed)
     layers = state.layers.pressure_share.shape[2]
     oil = problem.lubricant
     conductance = (
@@ -51,6 +49,7 @@ def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
         heating=dissipation(
             state.operator, state.thickness, state.layers, flow, problem.surface_speed
         ),
+        carried=_carried(problem, state, flow),
         conductance=conductance,
         heat_capacity=oil.density * oil.specific_heat,
         order=_march_order(problem, flow),
@@ -60,6 +59,21 @@ def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
         dx=state.operator.dx,
         dy=state.operator.dy,
     )
+
+
+def _carried(problem: FilmProblem, state: FilmState, flow: FilmFlow) -> Array:
+    """Part of the oil entering each column from the one before.
+
+    None where new oil enters. A film that re-forms behind the inception of its own stretch goes on
+    with the oil that the ruptured film brought, as far as that reaches: otherwise fresh oil would
+    come and go with every cell that ruptures there, and no temperature field would satisfy it.
+    """
+    part = np.where(flow.inlet, 0.0, 1.0)
+    if problem.thermal.inlet is InletModel.PERIODIC:
+        return np.where(np.roll(state.operator.held, 1, axis=0), part, 1.0)
+    if problem.mesh.slot.any() or problem.bearing.grooves:
+        part = np.where(flow.inlet & state.operator.linked[0], 1.0, part)
+    return part
 
 
 def _march_order(problem: FilmProblem, flow: FilmFlow) -> NDArray[np.int64]:
@@ -144,7 +158,6 @@ def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature:
     if thermal.inlet is InletModel.FRESH:
         return result
     if thermal.inlet is InletModel.PERIODIC:
-        result[0] = np.roll(temperature, 1, axis=0)
         result[1] = np.roll(temperature, -1, axis=0)
         return result
     return _mixed(problem, energy, temperature, result)
@@ -220,6 +233,7 @@ def heat_totals(
     temperature: Array,
     walls: WallTemperatures,
     inlet_temperature: Array,
+    leaving_temperature: Array,
 ) -> HeatTotals:
     """Where the dissipated power goes, over both halves."""
     k = temperature.shape[2]
@@ -232,23 +246,33 @@ def heat_totals(
         + heating[0] / k
     )
     total = float(np.sum(np.where(energy.held[:, :, None], 0.0, power)))
-    enthalpy = 0.0
-    for face, outward in ((0, -1.0), (1, 1.0), (2, -1.0), (3, 1.0)):
-        if face == 0:
-            open_ = energy.flow.inlet
-        elif face == 1:
-            open_ = _exits(energy)
-        else:
-            open_ = ~energy.linked[face] & ~energy.held
-        leaving = np.where(open_[:, :, None], outward * layer_fluxes(energy, face), 0.0)
-        enthalpy += float(
-            np.sum(np.maximum(leaving, 0.0) * temperature)
-            + np.sum(np.minimum(leaving, 0.0) * inlet_temperature[face])
-        )
     times = problem.mesh.multiplicity
+    enthalpy = _enthalpy_out(energy, temperature, inlet_temperature, leaving_temperature)
     return HeatTotals(
         dissipation=times * total,
         enthalpy_out=times * energy.heat_capacity * enthalpy,
         to_bush=times * float(heat_to_bush(energy, temperature, walls).sum()),
         to_shaft=times * heat_to_shaft(energy, temperature, walls.shaft),
     )
+
+
+def _enthalpy_out(
+    energy: EnergyProblem, temperature: Array, inlet_temperature: Array, leaving: Array
+) -> float:
+    """Enthalpy through all faces behind which no film lies, over rho c_p [m3 K/s], outward."""
+    total = 0.0
+    before = np.roll(leaving[0], 1, axis=0)
+    part = energy.carried[:, :, None]
+    for face, outward in ((0, -1.0), (1, 1.0), (2, -1.0), (3, 1.0)):
+        entering, out = inlet_temperature[face], temperature
+        if face == 0:
+            open_ = energy.flow.inlet
+            entering = part * before + (1.0 - part) * entering
+        elif face == 1:
+            open_, out = _exits(energy), leaving[0]
+        else:
+            open_ = ~energy.linked[face] & ~energy.held
+            out = leaving[1]
+        flux = np.where(open_[:, :, None], outward * layer_fluxes(energy, face), 0.0)
+        total += float(np.sum(np.maximum(flux, 0.0) * out + np.minimum(flux, 0.0) * entering))
+    return total

@@ -31,12 +31,14 @@ def linearize(
     multiplicity: float,
 ) -> tuple[Array, Array]:
     """Stiffness [N/m] and damping [N s/m], (2, 2) each, in the film's frame, viscosity frozen."""
+    # Where the film is ruptured only the oil in it is squeezed.
+    squeezed = operator.area if solution.liquid is None else solution.liquid * operator.area
     right = np.stack(
         [
             displacement_source(operator, solution.raw, -operator.cos),
             displacement_source(operator, solution.raw, -operator.sin),
-            operator.cos[0] * operator.area,
-            operator.sin[0] * operator.area,
+            operator.cos[0] * squeezed,
+            operator.sin[0] * squeezed,
         ]
     )
     perturbed = solution.factor.solve(np.where(operator.held, 0.0, right))

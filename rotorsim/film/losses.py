@@ -7,17 +7,15 @@ from numpy.typing import NDArray
 
 from ..model import RupturedFriction
 from .flow import film_flow
-from .problem import FilmProblem, FilmState
+from .problem import FilmProblem
+from .state import FilmState
 
 Array = NDArray[np.float64]
 
 
 def liquid_fraction(problem: FilmProblem, state: FilmState) -> Array:
     """What the oil fills of each cell, (n, m)."""
-    return film_flow(
-        state.operator, state.thickness, state.layers, state.solution.pressure,
-        state.solution.full, problem.surface_speed,
-    ).liquid_fraction  # fmt: skip
+    return film_flow(state, problem.surface_speed).liquid_fraction
 
 
 def friction_force(problem: FilmProblem, state: FilmState, fraction: Array) -> float:

@@ -239,7 +239,7 @@ def _supply_cells(
 
 def _regions(supply: NDArray[np.int64], slot: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Stretches of film between slots and full-length grooves; -1 in such grooves."""
-    blocked = (supply >= 0).all(axis=1)
+    blocked = np.asarray((supply >= 0).all(axis=1), dtype=bool)
     region = np.full(blocked.size, -1, dtype=np.int64)
     current = -1
     for i in range(blocked.size):

@@ -183,26 +183,26 @@ def _assemble(
         for j in range(m):
             for face in range(4):
                 h = west[i, j]
-                k, l = before, j
+                k, q = before, j
                 width = dy[j]
                 if face == 0:
                     h = 0.5 * (h + east[before, j]) if linked[0, i, j] else h
                 elif face == 1:
                     h = east[i, j]
-                    k, l = after, j
+                    k, q = after, j
                     h = 0.5 * (h + west[after, j]) if linked[1, i, j] else h
                 elif face == 2:
                     h = south[i, j]
-                    k, l = i, max(j - 1, 0)
+                    k, q = i, max(j - 1, 0)
                     width = dx[i]
                 else:
                     h = north[i, j]
-                    k, l = i, min(j + 1, m - 1)
+                    k, q = i, min(j + 1, m - 1)
                     width = dx[i]
                 mobility, open_share = f2[i, j], 1.0 - g[i, j]
                 if linked[face, i, j]:
-                    mobility = 0.5 * (mobility + f2[k, l])
-                    open_share = 0.5 * (open_share + 1.0 - g[k, l])
+                    mobility = 0.5 * (mobility + f2[k, q])
+                    open_share = 0.5 * (open_share + 1.0 - g[k, q])
                 thickness[face, i, j] = h
                 conductance[face, i, j] = h**3 * mobility * width / gap[face, i, j]
                 if face < 2:

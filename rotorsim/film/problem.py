@@ -1,4 +1,4 @@
-"""The film of one bearing at one speed: everything that stays put while position and heat change."""
+"""The film of one bearing at one speed: what stays put while position and heat change."""
 
 from __future__ import annotations
 
@@ -7,13 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Bearing, Case, FilmSettings, Inception, Lubricant, ThermalModel, ThermalSettings
-from .cavitation import PressureSolution, solve_pressure
-from .geometry import Thickness, film_thickness
+from ..model import (
+    Bearing,
+    Case,
+    Cavitation,
+    FilmSettings,
+    Inception,
+    Lubricant,
+    ThermalModel,
+    ThermalSettings,
+)
+from .cavitation import solve_pressure
+from .geometry import film_thickness
+from .jfo import solve_jfo
 from .layers import LayerIntegrals
 from .linearized import film_force
 from .mesh import FilmMesh, build_mesh
-from .operator import FaceTopology, FilmOperator, face_topology, film_operator
+from .operator import FaceTopology, face_topology, film_operator
+from .state import FilmState
 
 Array = NDArray[np.float64]
 
@@ -58,30 +69,6 @@ class FilmProblem:
         return self.is_thermal or self.settings.inception is Inception.MAX_FILM
 
 
-@dataclass(frozen=True)
-class FilmState:
-    """The film at one journal position and one viscosity field.
-
-    Attributes
-    ----------
-    position : tuple of float
-        Journal centre [m], film frame.
-    thickness : Thickness
-    operator : FilmOperator
-    layers : LayerIntegrals
-    solution : PressureSolution
-    force : (2,) array
-        Of the film on the journal [N], film frame.
-    """
-
-    position: tuple[float, float]
-    thickness: Thickness
-    operator: FilmOperator
-    layers: LayerIntegrals
-    solution: PressureSolution
-    force: Array
-
-
 def film_problem(
     case: Case, speed: float, bearing: Bearing, position: tuple[float, float]
 ) -> FilmProblem:
@@ -106,6 +93,7 @@ def film_state(
     *,
     velocity: tuple[float, float] = (0.0, 0.0),
     start: NDArray[np.bool_] | None = None,
+    frozen: NDArray[np.bool_] | None = None,
 ) -> FilmState:
     """Pressure and force with the journal at `position` [m], moving with `velocity` [m/s]."""
     mesh = problem.mesh
@@ -115,12 +103,16 @@ def film_state(
     if velocity != (0.0, 0.0):
         squeeze = -velocity[0] * operator.cos[0] - velocity[1] * operator.sin[0]
         squeeze = np.broadcast_to(squeeze, mesh.shape)
-    solution = solve_pressure(
-        operator,
-        problem.settings.cavitation,
-        squeeze=squeeze,
-        start=start,
-        region=mesh.region if problem.anchored else None,
-    )
+    if problem.settings.cavitation is Cavitation.JFO:
+        operator, solution = solve_jfo(operator, squeeze=squeeze, start=start, frozen=frozen)
+    else:
+        solution = solve_pressure(
+            operator,
+            problem.settings.cavitation,
+            squeeze=squeeze,
+            start=start,
+            region=mesh.region if problem.anchored else None,
+            frozen=frozen,
+        )
     force = film_force(operator, solution.pressure, mesh.multiplicity)
     return FilmState(position, thickness, operator, layers, solution, force)

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Bearing, Case, EccentricityTarget, LoadTarget, ThermalModel
+from ..model import Bearing, Case, EccentricityTarget, LoadTarget
 from ..status import SolveStatus
-from .banded import SingularFilmError
 from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
 from .geometry import film_thickness
 from .layers import isoviscous_layers
-from .problem import FilmProblem, FilmState, film_problem, film_state
+from .problem import FilmProblem, film_problem, film_state
+from .state import FilmState
 from .thd import TEMPERATURE_LIMITS, Heat, ThermalFilm, solve_thermal_film, uniform_heat
 
 Array = NDArray[np.float64]
@@ -114,7 +114,9 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
     heat = initial
     search = PlainSearch(target.load, clearance, 2.0)
     total = 0
-    for _ in range(MAX_MESHES):
+    meshes = 0
+    while True:
+        meshes += 1
         level = graded_eccentricity(eps)
         problem = film_problem(case, speed, case.bearing, (level * clearance, 0.0))
         if problem.is_thermal and heat is None:
@@ -128,7 +130,7 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
             film.state.position, film.thermal.heat if film.thermal else None,
             film.state.solution.full,
         )  # fmt: skip
-        if search.unreachable or graded_eccentricity(eps) == level:
+        if search.unreachable or graded_eccentricity(eps) == level or meshes == MAX_MESHES:
             break
     return _conclude(problem, film, _load_line(film.state), search, total)
 
@@ -145,11 +147,12 @@ def _load_line(state: FilmState) -> float:
 
 
 def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
-    """Any other film is solved in the load frame (a tilted plain one in a frame near its centre's)."""
-    clearance = case.bearing.radial_clearance
+    """Any other film is solved in the load frame; a tilted plain one near its centre's."""
     position = initial.position if initial else _first_position(case)
     heat, total = initial, 0
-    for _ in range(MAX_MESHES):
+    meshes = 0
+    while True:
+        meshes += 1
         frame = _frame_angle(case.bearing, position)
         bearing = case.bearing.turned(-frame)
         local = _turned(position, -frame)
@@ -159,7 +162,7 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
         if problem.is_thermal and heat is None:
             cold = _iterate_isothermal(problem, local, search, None)
             if cold.converged:
-                local = tuple(0.9 * e for e in cold.state.position)  # hot oil: further out, gently
+                local = cold.state.position
             search = _search(case, problem, frame)
         film = _iterate(problem, local, search, heat)
         total += film.iterations
@@ -169,7 +172,8 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
         )
         settled = _graded_position(bearing, film.state.position) == level
         turned = abs(_frame_angle(case.bearing, position) - frame)
-        if search.unreachable or not film.converged or (settled and turned < 1e-3):
+        found = settled and turned < 1e-3
+        if search.unreachable or not film.converged or found or meshes == MAX_MESHES:
             break
     return _conclude(problem, film, frame, search, total)
 
@@ -241,13 +245,15 @@ def _iterate_isothermal(
     layers = isoviscous_layers(problem.mesh.shape, viscosity)
     full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
     off = 0.0
-    for step in range(1, MAX_POSITION_STEPS + 1):
+    step = 0
+    while True:
+        step += 1
         state = film_state(problem, position, layers, start=full)
         full = state.solution.full
         if search is None:
             return _Iterate(state, None, state.solution.converged, state.solution.steps, 0.0)
         position, off = search(state)
-        if off < FORCE_TOLERANCE or search.unreachable:
+        if off < FORCE_TOLERANCE or search.unreachable or step == MAX_POSITION_STEPS:
             break
     done = off < FORCE_TOLERANCE and state.solution.converged
     return _Iterate(state, None, done, step, off)
@@ -296,8 +302,6 @@ def _out_of_range(temperature: Array) -> bool:
 
 __all__ = [
     "FilmSolution",
-    "SingularFilmError",
-    "ThermalModel",
     "WarmStart",
     "solve_film",
 ]

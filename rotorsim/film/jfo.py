@@ -1,0 +1,206 @@
+"""Mass-conserving rupture (Jakobsson & Floberg 1957, Olsson 1965): pressure and liquid fraction.
+
+Every cell either is full (liquid fraction 1, unknown pressure >= 0) or ruptured (pressure 0,
+unknown liquid fraction <= 1); drag carries the liquid fraction of the cell upstream. The
+complementarity problem is solved by an active set, each step one banded system in the unknown that
+the cell's state leaves open. The same matrix, at the solution, gives the perturbed pressures and
+liquid fractions.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import get_lapack_funcs
+
+from ..model import Cavitation
+from .banded import SingularFilmError, column_order
+from .cavitation import PressureSolution, solve_pressure
+from .kernels import kernel
+from .operator import FilmOperator
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+MAX_STEPS = 200
+
+_factorise, _triangular = get_lapack_funcs(("gbtrf", "gbtrs"), dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class JfoFactor:
+    """LU factors of the mixed system; `solve` gives pressures in full cells [Pa].
+
+    In ruptured cells the solution is the liquid fraction (or its perturbation).
+    """
+
+    band: Array
+    pivots: NDArray[np.int32]
+    width: int
+    order: NDArray[np.int64]
+    scale: float
+    full: Flags
+
+    def solve(self, right: Array) -> Array:
+        """Solve for (..., n, m) right-hand sides [m3/s]."""
+        n, m = self.full.shape
+        flat = np.asarray(right, dtype=float).reshape(-1, n, m)
+        packed = flat[:, self.order, :].reshape(flat.shape[0], -1).T
+        solved, info = _triangular(self.band, self.width, self.width, packed, self.pivots)
+        if info != 0:
+            raise SingularFilmError(f"band solve failed ({info})")
+        result = np.zeros_like(flat)
+        result[:, self.order, :] = solved.T.reshape(flat.shape[0], -1, m)
+        result = np.where(self.full, result * self.scale, result)
+        return result.reshape(np.shape(right))
+
+
+def solve_jfo(
+    operator: FilmOperator,
+    *,
+    squeeze: Array | None = None,
+    start: Flags | None = None,
+    frozen: Flags | None = None,
+) -> tuple[FilmOperator, PressureSolution]:
+    """Pressure and liquid fraction of the operator's film.
+
+    Returns
+    -------
+    FilmOperator
+        With the drag scaled by the liquid fraction that it carries.
+    PressureSolution
+        Its `liquid` is the liquid fraction.
+    """
+    film = ~operator.held
+    if frozen is not None:
+        full = frozen
+    elif start is None:
+        guess = solve_pressure(operator, Cavitation.REYNOLDS, squeeze=squeeze)
+        full = guess.full & film
+    else:
+        full = start & film
+    rate = np.zeros(film.shape) if squeeze is None else squeeze
+    seen: set[bytes] = set()
+    damped, converged, steps = False, False, 0
+    while True:
+        factor, right = _mixed_system(operator, full, rate)
+        unknown = factor.solve(right)
+        steps += 1
+        update = np.where(full, unknown > 0.0, unknown > 1.0 + 1e-12) & film
+        violations = int((update != full).sum())
+        if violations == 0 or frozen is not None:
+            converged = True
+            break
+        if steps >= MAX_STEPS:
+            break
+        # A set seen before means a cycle: from then on change one column of cells at a time.
+        key = np.packbits(update).tobytes()
+        damped = damped or key in seen
+        seen.add(key)
+        full = _one_change(full, update, unknown) if damped else update
+    pressure = np.where(full, unknown, 0.0)
+    liquid = np.where(full, 1.0, np.maximum(unknown, 0.0))
+    liquid[operator.held] = 1.0
+    pressure = np.where(operator.held, operator.outer_pressure[0], pressure)
+    carried = _carried_fraction(operator, liquid)
+    solution = PressureSolution(
+        pressure=pressure,
+        raw=pressure,
+        full=full,
+        factor=factor,
+        steps=steps,
+        converged=converged,
+        liquid=liquid,
+        violations=violations,
+    )
+    return replace(operator, drag=operator.drag * carried), solution
+
+
+def _carried_fraction(operator: FilmOperator, liquid: Array) -> Array:
+    """Liquid fraction that the drag carries through the west and east faces, (2, n, m)."""
+    west = np.where(operator.linked[0], np.roll(liquid, 1, axis=0), 1.0)
+    return np.stack([west, liquid])
+
+
+def _one_change(full: Flags, update: Flags, unknown: Array) -> Flags:
+    """Change only the cell that violates its bound most, relative to its kind's worst."""
+    wrong = update != full
+    pressure_scale = max(float(np.abs(np.where(full, unknown, 0.0)).max()), 1e-300)
+    size = np.where(full, -unknown / pressure_scale, unknown - 1.0)
+    size = np.where(wrong, size, -np.inf)
+    chosen = size >= 0.5 * size.max()
+    return np.where(chosen, update, full)
+
+
+def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[JfoFactor, Array]:
+    everything = np.ones_like(full)
+    order, folded = column_order(operator.linked, everything)
+    m = full.shape[1]
+    width = min(2 * m if folded else m, order.size * m - 1)
+    total = operator.conductance.sum(axis=0)
+    scale = float(np.mean(operator.drag)) / float(np.mean(total))
+    band = np.zeros((3 * width + 1, order.size * m), order="F")
+    position = np.empty(full.shape[0], dtype=np.int64)
+    position[order] = np.arange(order.size)
+    right = np.zeros(full.shape)
+    _fill(
+        operator.conductance, operator.linked, operator.outer_pressure, operator.drag,
+        operator.held, full, rate * operator.area, order, position, width, scale, band, right,
+    )  # fmt: skip
+    band, pivots, info = _factorise(band, width, width, overwrite_ab=1)
+    if info != 0:
+        raise SingularFilmError(f"the ruptured film's matrix is singular (pivot {info})")
+    return JfoFactor(band, pivots, width, order, scale, full), right
+
+
+@kernel
+def _fill(
+    conductance, linked, outer, drag, held, full, rate, order, position, width, scale, band, right
+):
+    """Rows: inflow into each cell with its sign turned, as right-hand sides are."""
+    n, m = full.shape
+    for c in range(order.size):
+        i = order[c]
+        before = i - 1 if i > 0 else n - 1
+        after = i + 1 if i < n - 1 else 0
+        for j in range(m):
+            column = c * m + j
+            middle = 2 * width
+            if held[i, j]:
+                band[middle, column] = 1.0
+                continue
+            # this cell's own unknown, in its own row and in its neighbours'
+            if full[i, j]:
+                total = 0.0
+                for face in range(4):
+                    total += conductance[face, i, j]
+                band[middle, column] = total * scale
+                for face in range(4):
+                    if not linked[face, i, j]:
+                        continue
+                    if face == 0:
+                        row = position[before] * m + j
+                    elif face == 1:
+                        row = position[after] * m + j
+                    elif face == 2:
+                        row = column - 1
+                    else:
+                        row = column + 1
+                    band[middle + row - column, column] -= conductance[face, i, j] * scale
+                right[i, j] -= drag[1, i, j] + rate[i, j]
+                if linked[1, i, j]:
+                    right[after, j] += drag[0, after, j]
+            else:
+                band[middle, column] = drag[1, i, j] + rate[i, j]
+                if linked[1, i, j]:
+                    row = position[after] * m + j
+                    band[middle + row - column, column] -= drag[0, after, j]
+            if not linked[0, i, j]:
+                right[i, j] += drag[0, i, j]
+            for face in range(4):
+                if not linked[face, i, j]:
+                    right[i, j] += conductance[face, i, j] * (
+                        outer[face, i, j] if full[i, j] else max(outer[face, i, j], 0.0)
+                    )
