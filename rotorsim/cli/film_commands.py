@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -100,12 +101,12 @@ def solve(
         points = sweep_points(cases, speeds, workers=workers, progress=progress)
     output.document({"points": [point_to_dict(point) for point in points]})
     if not (output.json or output.quiet):
-        from .tables import point_table, points_table
+        from .tables import point_table, points_tables
 
         if total < MANY:
             output.show(*(point_table(point) for point in points))
         else:
-            output.show(points_table(points, loaded.title))
+            output.show(loaded.title, *points_tables(points))
     return report_points(output, points)
 
 
@@ -186,6 +187,27 @@ def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
         output.warn(f"{describe(point)}: {point.message}")
     if len(bad) > 5:
         output.warn(f"and {len(bad) - 5} more points that are not converged")
-    for text, count in Counter(text for point in points for text in point.warnings).items():
-        output.warn(f"{text} (at {count} of {len(points)} points)")
+    for text in grouped_warnings(points):
+        output.warn(text)
     return INCOMPLETE if bad else DONE
+
+
+def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
+    """One line for each kind of warning: its last wording, and at how many points from where on.
+
+    Warnings that differ in their numbers alone are of one kind.
+    """
+    from .progress import describe
+
+    kinds: dict[str, list[tuple[OperatingPoint, str]]] = {}
+    for point in points:
+        for text in point.warnings:
+            kinds.setdefault(re.sub(r"[\d.]+", "0", text), []).append((point, text))
+    lines = []
+    for found in kinds.values():
+        (first, _), (last, text) = found[0], found[-1]
+        where = describe(first)
+        if len(found) > 1:
+            where = f"{len(found)} of {len(points)} points, from {where} to {describe(last)}"
+        lines.append(f"{text} (at {where})")
+    return lines

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from rich.table import Table
@@ -42,12 +43,17 @@ def grid(title: str, *columns: str) -> Table:
     return table
 
 
-def points_table(points: Sequence[OperatingPoint], title: str) -> Table:
-    """One line for each operating point."""
+def points_tables(points: Sequence[OperatingPoint]) -> Iterator[Table]:
+    """One table for each thermal model and clearance, one line for each speed."""
+    for (model, clearance), group in itertools.groupby(
+        points, lambda point: (point.thermal_model, point.radial_clearance)
+    ):
+        yield _points_table(list(group), f"{model}, c = {number(clearance * 1e6)} um")
+
+
+def _points_table(points: Sequence[OperatingPoint], title: str) -> Table:
     table = grid(
         title,
-        "model",
-        "c um",
         "rpm",
         "eps",
         "load kN",
@@ -60,8 +66,6 @@ def points_table(points: Sequence[OperatingPoint], title: str) -> Table:
     )
     for point in points:
         table.add_row(
-            point.thermal_model,
-            number(point.radial_clearance * 1e6),
             f"{point.speed * RPM:.0f}",
             number(point.eccentricity_ratio, 3),
             number(point.load / 1e3),

@@ -423,3 +423,24 @@ def test_a_closed_pipe_is_no_error(tmp_path):
     )
     assert done.stdout == "{\n"
     assert done.stderr == ""
+
+
+def test_warnings_that_differ_in_numbers_alone_are_told_once():
+    import dataclasses
+
+    from rotorsim.chunks import failed_point
+    from rotorsim.cli.film_commands import grouped_warnings
+    from rotorsim.scenario import Scenario
+
+    case = Scenario.from_text(TINY).case(thermal_model="thd")
+    points = [
+        dataclasses.replace(
+            failed_point(case, 100.0 * number, ""),
+            warnings=(f"Taylor number {number}.5 is above 41.2", "hot") if number < 5 else ("hot",),
+        )
+        for number in range(3, 7)
+    ]
+    lines = grouped_warnings(points)
+    assert len(lines) == 2
+    assert lines[0].startswith("Taylor number 4.5 is above 41.2 (at 2 of 4 points, from thd")
+    assert lines[1].startswith("hot (at 4 of 4 points")
