@@ -98,7 +98,7 @@ def _log_key(stream: rr.RecordingStream, path: EigenvaluePath, number: int) -> N
     if path.whirl_frequency_ratio is not None:
         text += f", whirl ratio {path.whirl_frequency_ratio:.3f}"
     # Up on the left, where no branch of a lightly damped pair runs.
-    place = [[0.52, -HEIGHT + 0.03 + 0.11 * number]]
+    place = [[0.58, -HEIGHT + 0.03 + 0.11 * number]]
     log_labels(stream, f"{ENTITY}/{path.name}/key", place, [text], model_colour(path.name))
 
 

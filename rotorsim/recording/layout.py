@@ -169,7 +169,7 @@ def _stability(contents: RecordingContents) -> Part | None:
     if contents.cascades:
         views = [map_view.cascade_view(p, i) for i, p in enumerate(contents.cascades)]
         parts.append(rrb.Tabs(*views))
-    return rrb.Horizontal(*parts, name="Stability") if parts else None
+    return rrb.Grid(*parts, grid_columns=2, name="Stability") if parts else None
 
 
 def _time_series(contents: RecordingContents) -> Part | None:

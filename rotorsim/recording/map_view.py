@@ -93,7 +93,7 @@ def log_cascade(stream: rr.RecordingStream, picture: CascadePicture, number: int
         log_labels(stream, f"{root}/order_label_{text}", [place], [text])
     peak = 10.0**high * MICRO
     note = f"amplitude: bright {peak:.3g} µm, each quarter of the scale 10 times less"
-    log_labels(stream, f"{root}/note", [[WIDTH / 2, -HEIGHT - 0.09]], [note])
+    log_labels(stream, f"{root}/note", [[WIDTH / 2, 0.21]], [note])
 
 
 def cascade_view(picture: CascadePicture, number: int) -> rrb.Spatial2DView:
@@ -101,7 +101,7 @@ def cascade_view(picture: CascadePicture, number: int) -> rrb.Spatial2DView:
     return rrb.Spatial2DView(
         origin=f"/cascade/{number}",
         name=f"Spectrum cascade: {picture.title}",
-        visual_bounds=chart_bounds(),
+        visual_bounds=chart_bounds(0.1),
     )
 
 

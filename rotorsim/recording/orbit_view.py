@@ -82,7 +82,7 @@ def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DVie
         Half-width of a close-up about the static position [m]; else the whole clearance circle.
     """
     root = orbit_entity(track.name)
-    reach = (1.25 * track.radial_clearance if zoom is None else zoom) * MICRO
+    reach = (1.32 * track.radial_clearance if zoom is None else zoom) * MICRO
     x0, y0 = (0.0, 0.0) if zoom is None else middle_of(track)
     centre = view_points(x0, y0).astype(float)
     # The force's scale belongs to the whole circle.
