@@ -124,7 +124,7 @@ class FilmTable(Table):
     inception: Annotated[Inception, choice(Inception)] = Inception.MAX_FILM
     mesh: MeshTable = MeshTable()
     ruptured_friction: Annotated[RupturedFriction, choice(RupturedFriction)] = (
-        RupturedFriction.WHOLE
+        RupturedFriction.LIQUID
     )
 
 
