@@ -39,6 +39,8 @@ NAHME = 1e-4
 """Four digits of friction and of temperature rise."""
 ROUNDING = 1e-10
 """Identities that the discrete scheme keeps exactly."""
+HALF_SOMMERFELD_POWER = 2e-3
+"""Friction power against dissipation under half-Sommerfeld, which breaks continuity by design."""
 HEAT_BALANCE = 0.005
 """Friction power against enthalpy and wall heat of a whole bearing."""
 MASS_BALANCE = 1e-8
