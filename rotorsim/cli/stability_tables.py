@@ -84,7 +84,10 @@ def thresholds_text(curve: StabilityCurve) -> str:
 
 def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """One line for each orbit (see `pipeline.summary.describe_orbit`)."""
-    table = grid("Orbits", "model", "run", "rpm", "turns", "max eps", "growth 1/s", "outcome")
+    head = ["model", "run", "rpm", "turns", "max eps", "growth 1/s"]
+    expected = any("eigenvalue_growth_rate" in row for row in rows)
+    head += ["eigenvalue", "outcome"] if expected else ["outcome"]
+    table = grid("Orbits", *head)
     for row in rows:
         first, last = (speed * RPM for speed in row["speed"])
         speeds = f"{last:.0f}" if math.isclose(first, last) else f"{first:.0f}-{last:.0f}"
@@ -95,6 +98,7 @@ def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
             number(row["revolutions"]),
             number(row["max_eccentricity_ratio"], 3),
             number(row["growth_rate"]),
+            *([number(row.get("eigenvalue_growth_rate"))] if expected else []),
             row["status"].value.replace("_", " "),
         )
     return table

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -81,13 +82,22 @@ def _percent(cold: float | None, hot: float | None) -> str:
 
 
 def threshold_table(curves: Sequence[StabilityCurve]) -> Table:
-    """Where the rotor loses stability, curve by curve."""
+    """Whether the rotor is stable at the highest speed, and where that changes."""
     mass = curves[0].mass
-    title = "Threshold speeds" + ("" if mass is None else f", {number(mass)} kg per bearing")
-    table = grid(title, "bearing", "rpm")
+    title = "Stability" + ("" if mass is None else f", {number(mass)} kg per bearing")
+    top = f"at {curves[0].speed[-1] * RPM:.0f} rpm"
+    table = grid(title, "bearing", *([] if mass is None else [top]), "threshold rpm")
     for curve in curves:
-        table.add_row(curve_title(curve), thresholds_text(curve))
+        decay = curve.decay_rate
+        verdict = [] if decay is None else [_verdict(float(decay[-1]))]
+        table.add_row(curve_title(curve), *verdict, thresholds_text(curve))
     return table
+
+
+def _verdict(decay: float) -> str:
+    if math.isnan(decay):
+        return "-"
+    return "stable" if decay > 0.0 else "unstable"
 
 
 def files_table(files: Mapping[str, Any]) -> Table:

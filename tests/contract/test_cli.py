@@ -371,7 +371,7 @@ def test_run_shows_a_summary_that_fits_the_terminal(tiny, here):
     done = here("run", tiny)
     assert done.returncode == 0, done.stderr
     assert max(map(len, done.stdout.splitlines())) <= 100
-    for words in ("8 film points, 8 converged", "by heating", "Threshold speeds", "tiny.rrd"):
+    for words in ("8 film points, 8 converged", "by heating", "threshold rpm", "tiny.rrd"):
         assert words in done.stdout
 
 
