@@ -219,7 +219,7 @@ def _heat_balance(solution: FilmSolution) -> HeatBalance | None:
     problem = solution.problem
     walls = wall_temperatures(problem.thermal, thermal.heat.bush, thermal.heat.shaft)
     totals = heat_totals(
-        problem, thermal.energy, thermal.viscosity, thermal.heat.temperature, walls,
+        problem, thermal.energy, thermal.heat.temperature, walls,
         thermal.inlet_temperature, thermal.leaving_temperature,
     )  # fmt: skip
     return HeatBalance(totals.dissipation, totals.enthalpy_out, totals.to_bush, totals.to_shaft)

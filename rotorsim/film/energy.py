@@ -148,7 +148,7 @@ def march(
     ----------
     viscosity : (n, m, k) array
         [Pa s]
-    inlet_temperature : (4, n, m, k) array or broadcastable
+    inlet_temperature : (4, n, m) or (4, n, m, k) array
         Of the oil that enters through a face behind which no film lies [K].
     temperature : (n, m, k) array
         First guess, overwritten [K].
@@ -170,6 +170,8 @@ def march(
     change = 0.0
     flow, layers = problem.flow, problem.layers
     extra = np.zeros((1, 1, 1)) if source is None else source
+    if inlet_temperature.ndim == 3:
+        inlet_temperature = inlet_temperature[:, :, :, None]
     # Temperature of the oil that leaves each cell along the film and along the axis.
     if leaving is None:
         leaving = np.stack([temperature, temperature])
@@ -197,6 +199,7 @@ def _sweep(
     upper, right = np.empty(layers), np.empty(layers)
     slope = np.empty(2 * layers)
     largest = 0.0
+    layered = 1 if inlet_temperature.shape[3] == layers else 0
     with_extra = extra.shape[0] == n
     for c in range(n):
         i = order[c]
@@ -260,13 +263,13 @@ def _sweep(
                     if part > 0.0:
                         rhs += q_w * part * leaving[0, before, j, k]
                     if part < 1.0:
-                        rhs += q_w * (1.0 - part) * inlet_temperature[0, i, j, k]
+                        rhs += q_w * (1.0 - part) * inlet_temperature[0, i, j, k * layered]
                 if q_e <= 0.0:
                     center -= q_e
                     if linked[1, i, j]:
                         rhs -= q_e * temperature[after, j, k]
                     else:
-                        rhs -= q_e * inlet_temperature[1, i, j, k]
+                        rhs -= q_e * inlet_temperature[1, i, j, k * layered]
                 elif q_w > 0.0:
                     # The weight fades with what enters from upstream: no jump where flow turns.
                     ahead = along_w * min(1.0, q_w / q_e)
@@ -278,7 +281,7 @@ def _sweep(
                     if linked[2, i, j]:
                         rhs += q_s * leaving[1, i, south, k]
                     else:
-                        rhs += q_s * inlet_temperature[2, i, j, k]
+                        rhs += q_s * inlet_temperature[2, i, j, k * layered]
                     if q_n > 0.0:
                         aside = south_w * min(1.0, q_s / q_n)
                         aside_from = temperature[i, south, k]
@@ -289,7 +292,7 @@ def _sweep(
                     if linked[3, i, j]:
                         rhs -= q_n * leaving[1, i, north, k]
                     else:
-                        rhs -= q_n * inlet_temperature[3, i, j, k]
+                        rhs -= q_n * inlet_temperature[3, i, j, k * layered]
                     if q_s < 0.0:
                         aside = north_w * min(1.0, q_n / q_s)
                         aside_from = temperature[i, north, k]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,9 +48,20 @@ class PlainSearch:
         growth = -float(state.force @ stiffness[:, 0]) / carried
         slope = max(growth * self.clearance * eps * (1.0 - eps) / carried, 0.3)
         off = carried / self.load - 1.0
+        lowest, highest = ECCENTRICITY_LIMITS
         step = -math.log(carried / self.load) / slope
-        self.unreachable = eps >= ECCENTRICITY_LIMITS[1] * (1.0 - 1e-9) and off < 0.0
+        # A film heated before it begins carries some load even around a centred journal.
+        too_heavy = eps >= highest * (1.0 - 1e-9) and off < 0.0
+        too_light = eps <= lowest * (1.0 + 1e-9) and off > 0.0
+        self.unreachable = too_heavy or too_light
         return self._at(xi + max(-2.0, min(2.0, step))), abs(off)
+
+    def allowed(self, old: Position, new: Position) -> Position:
+        """Keep a mixed step within the clearance and near the old position."""
+        lowest, highest = ECCENTRICITY_LIMITS
+        left = self.clearance - old[0]
+        size = min(max(new[0], 0.5 * old[0]), self.clearance - 0.4 * left)
+        return min(max(size, lowest * self.clearance), highest * self.clearance), 0.0
 
     def _at(self, xi: float) -> Position:
         lowest, highest = ECCENTRICITY_LIMITS
@@ -67,7 +78,6 @@ class LoadSearch:
     thinnest: Callable[[Position], float]
     """Smallest film thickness [m] at a position; not positive outside the bore."""
     unreachable: bool = False
-    _stuck: int = field(default=0)
 
     def __call__(self, state: FilmState) -> tuple[Position, float]:
         """Newton's next position, and how far the force is off, relative to the load."""
@@ -75,17 +85,26 @@ class LoadSearch:
         stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
         off = float(np.hypot(*missing) / np.hypot(*self.load))
         step = _newton_step(stiffness, missing, self.clearance)
-        position, now = np.array(state.position), self.thinnest(state.position)
-        # At most a fifth of the clearance, and never more than 0.6 of the film left, in one step.
+        position = np.array(state.position)
+        following = self.allowed(state.position, _pair(position + step))
+        pinned = self.thinnest(state.position) <= 2.0 * CLEARANCE_KEPT * self.clearance
+        self.unreachable = following == state.position or (pinned and off > 1e-3)
+        return following, off
+
+    def allowed(self, old: Position, new: Position) -> Position:
+        """Shorten a step that goes too far.
+
+        At most a fifth of the clearance, and never more than 0.6 of the film that is left.
+        """
+        start, step = np.array(old), np.array(new) - np.array(old)
         length = float(np.hypot(*step))
         scale = min(1.0, 0.2 * self.clearance / length) if length > 0.0 else 1.0
-        floor = max(0.4 * now, CLEARANCE_KEPT * self.clearance)
-        while scale > 1e-4 and self.thinnest(_pair(position + scale * step)) < floor:
+        floor = max(0.4 * self.thinnest(old), CLEARANCE_KEPT * self.clearance)
+        while scale > 1e-4 and self.thinnest(_pair(start + scale * step)) < floor:
             scale *= 0.7
-        pinned = now <= 2.0 * CLEARANCE_KEPT * self.clearance and off > 1e-3
-        self._stuck = self._stuck + 1 if pinned or scale <= 1e-4 else 0
-        self.unreachable = self._stuck >= 4
-        return _pair(position + (scale if scale > 1e-4 else 0.0) * step), off
+        if scale <= 1e-4:
+            return old
+        return new if scale == 1.0 else _pair(start + scale * step)
 
 
 @dataclass
@@ -109,6 +128,10 @@ class AttitudeSearch:
         rate = (state.force[0] * turn[1] - state.force[1] * turn[0]) / size**2
         step = -direction / rate if abs(rate) > 0.1 else -direction
         return self.at(angle + max(-0.4, min(0.4, step))), abs(direction)
+
+    def allowed(self, old: Position, new: Position) -> Position:  # noqa: ARG002
+        """Stay at the given eccentricity."""
+        return self.at(math.atan2(new[1], new[0]))
 
     def at(self, angle: float) -> Position:
         """Position at an attitude angle [rad]."""

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from ..model import BushModel, InletModel, ShaftModel, ThermalSettings
 from .energy import EnergyProblem, WallTemperatures, dissipation
 from .flow import FilmFlow, film_flow
+from .operator import EAST, NORTH, SOUTH, WEST
 from .problem import FilmProblem
 from .state import FilmState
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -121,83 +123,73 @@ def heat_to_bush(energy: EnergyProblem, temperature: Array, walls: WallTemperatu
     return np.where(energy.held, 0.0, flux)
 
 
-def layer_fluxes(energy: EnergyProblem, face: int) -> Array:
-    """Volume flux of every layer through one face of each cell [m3/s], (n, m, k)."""
+def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
+    """Volume flux of every layer [m3/s] through one face of the chosen cells, (cells, k)."""
     flow, layers = energy.flow, energy.layers
-    shift = {0: (1, 0), 1: (-1, 0), 2: (1, 1), 3: (-1, 1)}[face]
-    own_a, own_b = layers.pressure_share, layers.shear_share
-    far_a, far_b = (np.roll(s, shift[0], axis=shift[1]) for s in (own_a, own_b))
-    shared = flow.shared[face][:, :, None]
-    carried = (~flow.shared[face] & energy.linked[face])[:, :, None]
-    share_a = np.where(shared, 0.5 * (own_a + far_a), own_a)
-    share_b = np.where(shared, 0.5 * (own_b + far_b), own_b)
-    if face == 0:
-        share_b = np.where(carried & ~flow.inlet[:, :, None], far_b, share_b)
-    flux = flow.drive[face][:, :, None] * share_a
-    if face < 2:
-        flux = flux + flow.drag[face][:, :, None] * share_b
-    return np.where(energy.held[:, :, None], 0.0, flux)
+    i, j = np.nonzero(cells)
+    n, m = cells.shape
+    far_i = (i + {WEST: -1, EAST: 1}.get(face, 0)) % n
+    far_j = np.clip(j + {SOUTH: -1, NORTH: 1}.get(face, 0), 0, m - 1)
+    share_a, share_b = layers.pressure_share[i, j], layers.shear_share[i, j]
+    far_a, far_b = layers.pressure_share[far_i, far_j], layers.shear_share[far_i, far_j]
+    shared = flow.shared[face][i, j][:, None]
+    if face == WEST:
+        # A ruptured column passes on its own profile.
+        passed = (~flow.shared[face] & energy.linked[face] & ~flow.inlet)[i, j][:, None]
+        share_b = np.where(passed, far_b, share_b)
+    share_a = np.where(shared, 0.5 * (share_a + far_a), share_a)
+    share_b = np.where(shared, 0.5 * (share_b + far_b), share_b)
+    flux = flow.drive[face][i, j][:, None] * share_a
+    if face in (WEST, EAST):
+        flux = flux + flow.drag[face][i, j][:, None] * share_b
+    return flux
 
 
 def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature: Array) -> Array:
     """Temperature of the oil that enters through each face behind which no film lies [K].
 
-    (4, n, m, k). ``fresh``: the supply's. ``mixing``: in every groove or slot the oil that arrives
-    mixes with as much supplied oil as is missing. ``periodic``: the film's own, from the column
-    before.
+    (4, n, m). ``fresh``: the supply's. ``mixing``: in every groove or slot the oil that arrives
+    mixes with as much supplied oil as is missing. ``periodic``: as ``fresh`` where no film lies
+    before; a slot passes the film's own oil on (see `_carried`).
     """
     thermal, mesh = problem.thermal, problem.mesh
-    n, m, k = temperature.shape
-    result = np.full((4, n, m, k), thermal.supply_temperature)
+    result = np.full((4, *mesh.shape), thermal.supply_temperature)
     for number, groove in enumerate(problem.bearing.grooves):
         if groove.supply_temperature is None:
             continue
         behind = mesh.supply == number
         for face, (shift, axis) in enumerate(((1, 0), (-1, 0), (1, 1), (-1, 1))):
             result[face, np.roll(behind, shift, axis=axis)] = groove.supply_temperature
-    if thermal.inlet is InletModel.FRESH:
-        return result
-    if thermal.inlet is InletModel.PERIODIC:
-        result[1] = np.roll(temperature, -1, axis=0)
-        return result
-    return _mixed(problem, energy, temperature, result)
+    if thermal.inlet is InletModel.MIXING:
+        return _mixed(problem, energy, temperature, result)
+    return result
 
 
 def _mixed(
     problem: FilmProblem, energy: EnergyProblem, temperature: Array, supplied: Array
 ) -> Array:
-    """Mix what arrives in each groove, slot or re-formed film with fresh oil."""
-    west, east = layer_fluxes(energy, 0), layer_fluxes(energy, 1)
-    entry, exit_ = np.roll(energy.flow.inlet, 0), _exits(energy)
+    """Mix what arrives in each groove or slot with as much fresh oil as is missing there."""
     wells = _wells(problem, energy)
-    mixed = supplied.copy()
-    faces = (
-        (0, entry, -west, wells[0]),  # positive: into the well
-        (1, exit_, east, wells[1]),
-    )
-    axial = [
-        (face, (problem.topology.linked[face] == False) & (wells[face] >= 0),  # noqa: E712
-         (layer_fluxes(energy, face) * (1.0 if face == 3 else -1.0)), wells[face])
-        for face in (2, 3)
-    ]  # fmt: skip
-    everything = [*faces, *axial]
-    for well in np.unique(np.concatenate([w[w >= 0] for *_, w in everything] or [np.array([])])):
-        taken = given = heat = 0.0
-        supply = 0.0
-        for face, open_, into, member in everything:
-            here = (open_ & (member == well))[:, :, None]
-            arriving = np.where(here, np.maximum(into, 0.0), 0.0)
-            leaving = np.where(here, np.maximum(-into, 0.0), 0.0)
-            given += float(arriving.sum())
-            heat += float((arriving * temperature).sum())
-            taken += float(leaving.sum())
-            supply += float((leaving * supplied[face]).sum())
-        if taken <= 0.0:
+    count = len(problem.bearing.grooves) + 1
+    taken, given, heat, supply = (np.zeros(count) for _ in range(4))
+    for face in (WEST, EAST, SOUTH, NORTH):
+        open_ = wells[face] >= 0
+        if not open_.any():
             continue
-        fresh = max(taken - given, 0.0)
+        into = layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
+        number = wells[face][open_]
+        arriving, leaving = np.maximum(into, 0.0), np.maximum(-into, 0.0)
+        np.add.at(given, number, arriving.sum(axis=1))
+        np.add.at(heat, number, (arriving * temperature[open_]).sum(axis=1))
+        np.add.at(taken, number, leaving.sum(axis=1))
+        np.add.at(supply, number, leaving.sum(axis=1) * supplied[face][open_])
+    fresh = np.maximum(taken - given, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
         value = (heat + fresh * supply / taken) / (given + fresh)
-        for face, open_, _into, member in everything:
-            mixed[face][open_ & (member == well)] = value
+    mixed = supplied.copy()
+    for face in range(4):
+        here = (wells[face] >= 0) & (taken > 0.0)[np.maximum(wells[face], 0)]
+        mixed[face][here] = value[wells[face][here]]
     return mixed
 
 
@@ -209,7 +201,7 @@ def _exits(energy: EnergyProblem) -> NDArray[np.bool_]:
 def _wells(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
     """Number of the groove behind each face, (4, n, m); -1 for none.
 
-    A slot and the make-up of a re-formed film count as one groove more, shared by the whole length.
+    A slot, or the start of a film that begins anywhere, counts as one groove more.
     """
     supply = problem.mesh.supply
     grooves = len(problem.bearing.grooves)
@@ -218,7 +210,7 @@ def _wells(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
     wells[1] = np.roll(supply, -1, axis=0)
     wells[2][:, 1:] = supply[:, :-1]
     wells[3][:, :-1] = supply[:, 1:]
-    inlet = energy.flow.inlet
+    inlet = energy.flow.inlet & (energy.carried < 1.0)
     wells[0][inlet & (wells[0] < 0)] = grooves
     after = np.roll(inlet & (np.roll(supply, 1, axis=0) < 0), -1, axis=0)
     wells[1][after & (wells[1] < 0)] = grooves
@@ -229,27 +221,21 @@ def _wells(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
 def heat_totals(
     problem: FilmProblem,
     energy: EnergyProblem,
-    viscosity: Array,
     temperature: Array,
     walls: WallTemperatures,
     inlet_temperature: Array,
     leaving_temperature: Array,
 ) -> HeatTotals:
     """Where the dissipated power goes, over both halves."""
-    k = temperature.shape[2]
-    edges = np.linspace(0.0, 1.0, k + 1) - energy.layers.g[:, :, None]
-    fluidity = 1.0 / viscosity
-    heating = energy.heating[:, :, :, None]
-    power = fluidity * (
-        heating[2] * np.diff(edges**3, axis=2) / 3.0
-        + heating[1] * np.diff(edges**2, axis=2) / 2.0
-        + heating[0] / k
+    # Summed over the layers: int (z - G)^2/mu = F_2, int (z - G)/mu = 0, int 1/mu = F_0.
+    film = ~energy.held
+    total = np.sum(
+        film * (energy.heating[2] * energy.layers.f2 + energy.heating[0] * energy.layers.f0)
     )
-    total = float(np.sum(np.where(energy.held[:, :, None], 0.0, power)))
     times = problem.mesh.multiplicity
     enthalpy = _enthalpy_out(energy, temperature, inlet_temperature, leaving_temperature)
     return HeatTotals(
-        dissipation=times * total,
+        dissipation=times * float(total),
         enthalpy_out=times * energy.heat_capacity * enthalpy,
         to_bush=times * float(heat_to_bush(energy, temperature, walls).sum()),
         to_shaft=times * heat_to_shaft(energy, temperature, walls.shaft),
@@ -262,17 +248,20 @@ def _enthalpy_out(
     """Enthalpy through all faces behind which no film lies, over rho c_p [m3 K/s], outward."""
     total = 0.0
     before = np.roll(leaving[0], 1, axis=0)
-    part = energy.carried[:, :, None]
-    for face, outward in ((0, -1.0), (1, 1.0), (2, -1.0), (3, 1.0)):
-        entering, out = inlet_temperature[face], temperature
-        if face == 0:
+    for face, outward in ((WEST, -1.0), (EAST, 1.0), (SOUTH, -1.0), (NORTH, 1.0)):
+        out = temperature
+        if face == WEST:
             open_ = energy.flow.inlet
-            entering = part * before + (1.0 - part) * entering
-        elif face == 1:
+        elif face == EAST:
             open_, out = _exits(energy), leaving[0]
         else:
-            open_ = ~energy.linked[face] & ~energy.held
-            out = leaving[1]
-        flux = np.where(open_[:, :, None], outward * layer_fluxes(energy, face), 0.0)
-        total += float(np.sum(np.maximum(flux, 0.0) * out + np.minimum(flux, 0.0) * entering))
+            open_, out = ~energy.linked[face] & ~energy.held, leaving[1]
+        entering = inlet_temperature[face][open_][:, None]
+        if face == WEST:
+            part = energy.carried[open_][:, None]
+            entering = part * before[open_] + (1.0 - part) * entering
+        flux = outward * layer_fluxes(energy, face, open_)
+        total += float(
+            np.sum(np.maximum(flux, 0.0) * out[open_]) + np.sum(np.minimum(flux, 0.0) * entering)
+        )
     return total

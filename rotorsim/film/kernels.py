@@ -13,7 +13,9 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 def kernel(function: Function) -> Function:
     """Compile `function` on first use and keep the machine code on disk.
 
-    Division follows numpy (no exception); multiplications and additions may be fused, nothing else
-    is relaxed, so that NaN and infinities still behave.
+    Division follows numpy (no exception); sums may be reordered and fused, nothing else is relaxed,
+    so that NaN and infinities still behave.
     """
-    return numba.njit(cache=True, error_model="numpy", fastmath={"contract"}, nogil=True)(function)
+    return numba.njit(
+        cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, nogil=True
+    )(function)

@@ -245,7 +245,7 @@ def _iterate_isothermal(
     layers = isoviscous_layers(problem.mesh.shape, viscosity)
     full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
     off = 0.0
-    step = 0
+    step, stuck = 0, 0
     while True:
         step += 1
         state = film_state(problem, position, layers, start=full)
@@ -253,7 +253,8 @@ def _iterate_isothermal(
         if search is None:
             return _Iterate(state, None, state.solution.converged, state.solution.steps, 0.0)
         position, off = search(state)
-        if off < FORCE_TOLERANCE or search.unreachable or step == MAX_POSITION_STEPS:
+        stuck = stuck + 1 if search.unreachable else 0
+        if off < FORCE_TOLERANCE or stuck >= 4 or step == MAX_POSITION_STEPS:
             break
     done = off < FORCE_TOLERANCE and state.solution.converged
     return _Iterate(state, None, done, step, off)

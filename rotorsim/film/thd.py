@@ -7,13 +7,14 @@ may shift the journal between iterations, so that position and temperature conve
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import BushModel, ShaftModel
+from ..model import BushModel, InletModel, ShaftModel
 from .anderson import AndersonMixer
 from .bush import BushConduction
 from .energy import EnergyProblem, march
@@ -32,13 +33,17 @@ from .state import FilmState
 Array = NDArray[np.float64]
 Position = tuple[float, float]
 
-TOLERANCE = 1e-6
+TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
 MAX_ITERATIONS = 150
 FREEZE_AFTER = 30
 """Iterations after which the cells' states, full or ruptured, are held (`solve_thermal_film`)."""
 VIOLATIONS_ALLOWED = 2e-3
 """Part of the cells that may break the rupture condition at the end because they were held."""
+UNREACHABLE_STEPS = 8
+"""Iterations that the search may lie at the end of its range before it is given up."""
+POSITION_WEIGHT = 30.0
+"""[K]; a clearance's change of position counts like this change of the whole temperature field."""
 TEMPERATURE_LIMITS = (150.0, 650.0)
 """[K]; an iterate outside is pulled back, a converged field outside is out of range."""
 
@@ -61,18 +66,26 @@ class Heat:
     bush: Array
     shaft: float
 
-    def packed(self) -> Array:
-        """All unknowns in one flat array."""
-        return np.concatenate([self.temperature.ravel(), self.bush.ravel(), [self.shaft]])
+    def packed(self, position: Position, clearance: float) -> Array:
+        """All unknowns in one flat array, the position weighing as much as the whole field."""
+        weight = self._weight(clearance)
+        tail = [self.shaft, weight * position[0], weight * position[1]]
+        return np.concatenate([self.temperature.ravel(), self.bush.ravel(), tail])
 
-    def like(self, packed: Array) -> Heat:
-        """The reverse of `packed`."""
+    def unpacked(self, packed: Array, clearance: float) -> tuple[Heat, Position]:
+        """The reverse of `packed`, temperatures held within their limits."""
         films, bore = self.temperature.size, self.bush.size
-        return Heat(
-            temperature=packed[:films].reshape(self.temperature.shape).copy(),
-            bush=packed[films : films + bore].reshape(self.bush.shape).copy(),
-            shaft=float(packed[-1]),
+        np.clip(packed[:-2], *TEMPERATURE_LIMITS, out=packed[:-2])
+        heat = Heat(
+            temperature=packed[:films].reshape(self.temperature.shape),
+            bush=packed[films : films + bore].reshape(self.bush.shape),
+            shaft=float(packed[-3]),
         )
+        weight = self._weight(clearance)
+        return heat, (float(packed[-2]) / weight, float(packed[-1]) / weight)
+
+    def _weight(self, clearance: float) -> float:
+        return POSITION_WEIGHT * math.sqrt(self.temperature.size) / clearance
 
 
 @dataclass(frozen=True)
@@ -87,7 +100,7 @@ class ThermalFilm:
     viscosity : (n, m, k) array
         [Pa s]
     energy : EnergyProblem
-    inlet_temperature : (4, n, m, k) array
+    inlet_temperature : (4, n, m) array
         [K]
     leaving_temperature : (2, n, m, k) array
         Of the oil that leaves each cell along the film and the axis [K].
@@ -111,8 +124,18 @@ class ThermalFilm:
     history: tuple[float, ...]
 
 
-Move = Callable[[FilmState], tuple[Position, float]]
-"""From the film's state to the next position and the relative force residual."""
+class Move(Protocol):
+    """Search for the journal's position."""
+
+    unreachable: bool
+
+    def __call__(self, state: FilmState) -> tuple[Position, float]:
+        """From the film's state to the next position and the relative force residual."""
+        ...
+
+    def allowed(self, old: Position, new: Position) -> Position:
+        """Pull a mixed step back to where a film can be."""
+        ...
 
 
 def uniform_heat(problem: FilmProblem) -> Heat:
@@ -157,8 +180,9 @@ def solve_thermal_film(
         With ``converged`` False if `max_iterations` did not suffice.
     """
     heat = uniform_heat(problem) if initial is None else initial
-    mixer = AndersonMixer(depth=6)
-    release = FREEZE_AFTER
+    clearance = problem.bearing.radial_clearance
+    mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 3)
+    release, stuck = FREEZE_AFTER, 0
     law, bush = problem.lubricant.law, _bush_of(problem)
     full, frozen, leaving, history = None, None, None, []
     while True:
@@ -168,34 +192,41 @@ def solve_thermal_film(
         energy = energy_problem(problem, state)
         inlet = inlet_temperatures(problem, energy, heat.temperature)
         mapped, leaving = _through_energy(problem, energy, viscosity, heat, inlet, bush, leaving)
-        residual = _change(law.viscosity, viscosity, mapped, heat)
+        residual = _change(problem, mapped, heat)
         history.append(residual)
-        off = 0.0
-        if move is not None:
-            position, off = move(state)
+        target, off = (position, 0.0) if move is None else move(state)
+        stuck = stuck + 1 if move is not None and move.unreachable else 0
         done = residual < tolerance and off < force_tolerance
         if done and state.solution.violations > VIOLATIONS_ALLOWED * full.size:
             done, frozen, release = False, None, len(history) + FREEZE_AFTER
         elif len(history) >= release and frozen is None:
             frozen = full
-        if done or len(history) >= max_iterations or not np.isfinite(residual):
+        given_up = stuck >= UNREACHABLE_STEPS or not np.isfinite(residual)
+        if done or given_up or len(history) >= max_iterations:
             return ThermalFilm(
                 state=state, heat=heat, viscosity=viscosity, energy=energy,
                 inlet_temperature=inlet, leaving_temperature=leaving, converged=done,
                 iterations=len(history), residual=residual, history=tuple(history),
             )  # fmt: skip
-        mixed = mixer.next(heat.packed(), mapped.packed())
-        heat = heat.like(np.clip(mixed, *TEMPERATURE_LIMITS))
+        mixed = mixer.next(heat.packed(position, clearance), mapped.packed(target, clearance))
+        heat, following = heat.unpacked(mixed, clearance)
+        if move is not None:
+            allowed = move.allowed(position, following)
+            if allowed != following:
+                mixer.forget()
+            position = allowed
 
 
-def _change(
-    viscosity_at: Callable[[Array], Array], viscosity: Array, mapped: Heat, heat: Heat
-) -> float:
-    """Largest change of log viscosity anywhere, walls included."""
-    change = np.abs(np.log(viscosity_at(mapped.temperature) / viscosity)).max()
-    slope = change / max(np.abs(mapped.temperature - heat.temperature).max(), 1e-300)
-    walls = max(np.abs(mapped.bush - heat.bush).max(), abs(mapped.shaft - heat.shaft))
-    return float(max(change, slope * walls if slope < 1.0 else 0.0))
+def _change(problem: FilmProblem, mapped: Heat, heat: Heat) -> float:
+    """Largest change of log viscosity anywhere, as the oil thins fastest; walls included."""
+    change = max(
+        float(np.abs(mapped.temperature - heat.temperature).max()),
+        float(np.abs(mapped.bush - heat.bush).max()),
+        abs(mapped.shaft - heat.shaft),
+    )
+    coldest = float(mapped.temperature.min())
+    near = problem.lubricant.law.viscosity(np.array([coldest, coldest + 1e-3]))
+    return change * max(float(np.log(near[0] / near[1])) / 1e-3, 1e-6)
 
 
 def _bush_of(problem: FilmProblem) -> BushConduction | None:
@@ -216,7 +247,8 @@ def _through_energy(
     """New temperatures of film, bore and shaft from the energy equation and the walls."""
     walls = wall_temperatures(problem.thermal, heat.bush, heat.shaft)
     temperature = heat.temperature.copy()
-    passes = 2 if (energy.flow.drive[0][energy.flow.inlet] > 0.0).any() else 1
+    # A film that feeds itself is marched round several times; else the fixed point does the rest.
+    passes = 3 if problem.thermal.inlet is InletModel.PERIODIC else 1
     _, leaving = march(energy, viscosity, walls, inlet, temperature, passes=passes, leaving=leaving)
     shaft, bore = heat.shaft, heat.bush
     if problem.thermal.shaft is ShaftModel.INSULATED:
