@@ -76,9 +76,10 @@ def _changes(cold: Mapping[str, Any], hot: Mapping[str, Any]) -> list[str]:
 
 
 def _percent(cold: float | None, hot: float | None) -> str:
-    if not cold or hot is None:
+    if not cold or hot is None or not math.isfinite(hot / cold):
         return ""
-    return f"{100.0 * (hot / cold - 1.0):+.1f} %"
+    change = round(100.0 * (hot / cold - 1.0), 1)
+    return f"{change:+.1f} %" if change else "0 %"
 
 
 def threshold_table(curves: Sequence[StabilityCurve]) -> Table:
