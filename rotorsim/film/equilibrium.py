@@ -109,9 +109,11 @@ class LoadSearch:
 
 @dataclass
 class AttitudeSearch:
-    """Attitude at a given eccentricity, so that the film's force points along -x."""
+    """Attitude at a given eccentricity, so that the film carries a load along a given line."""
 
     eccentricity: float
+    load_angle: float
+    """Direction of the load in the film frame [rad]."""
     multiplicity: float
     unreachable: bool = False
 
@@ -124,7 +126,8 @@ class AttitudeSearch:
         stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
         along = self.eccentricity * np.array([-math.sin(angle), math.cos(angle)])
         turn = -stiffness @ along  # dF/d(angle)
-        direction = math.atan2(-state.force[1], -state.force[0])  # of the load that it carries
+        carried = math.atan2(-state.force[1], -state.force[0])
+        direction = math.remainder(carried - self.load_angle, 2.0 * math.pi)
         rate = (state.force[0] * turn[1] - state.force[1] * turn[0]) / size**2
         step = -direction / rate if abs(rate) > 0.1 else -direction
         return self.at(angle + max(-0.4, min(0.4, step))), abs(direction)

@@ -181,7 +181,7 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
 def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | AttitudeSearch:
     clearance, times = case.bearing.radial_clearance, problem.mesh.multiplicity
     if isinstance(case.target, EccentricityTarget):
-        return AttitudeSearch(case.target.eccentricity_ratio * clearance, times)
+        return AttitudeSearch(case.target.eccentricity_ratio * clearance, -frame, times)
     load = case.target.load * np.array([math.cos(frame), -math.sin(frame)])
     return LoadSearch(load, clearance, times, _thinnest(problem))
 
