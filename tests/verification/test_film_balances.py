@@ -17,6 +17,7 @@ from rotorsim.model import (
     Bearing,
     BushModel,
     Cavitation,
+    ExponentialViscosity,
     Groove,
     InletModel,
     ShaftModel,
@@ -182,3 +183,19 @@ def test_rupture_models_agree_where_nothing_ruptures():
         np.testing.assert_allclose(point.stiffness, free.stiffness, rtol=1e-8)
         np.testing.assert_allclose(point.damping, free.damping, rtol=1e-8)
         np.testing.assert_array_equal(point.fields.liquid_fraction, 1.0)
+
+
+def test_thermal_film_of_a_constant_viscosity_is_the_isothermal_one():
+    """With beta = 0 heat changes nothing: force, K and C as Reynolds' equation gives them."""
+    case = thermal_case(0.5)
+    oil = replace(case.lubricant, law=ExponentialViscosity(0.0277, 313.15, 0.0))
+    case = replace(case, lubricant=oil)
+    cold = replace(case, thermal=replace(case.thermal, model=ThermalModel.ISOTHERMAL))
+    hot, plain = solve_case(case, SPEED)[0], solve_case(cold, SPEED)[0]
+    assert hot.converged
+    assert plain.converged
+    assert hot.load == pytest.approx(plain.load, rel=ROUNDING)
+    assert hot.friction_force == pytest.approx(plain.friction_force, rel=ROUNDING)
+    np.testing.assert_allclose(hot.stiffness, plain.stiffness, rtol=1e-8)
+    np.testing.assert_allclose(hot.damping, plain.damping, rtol=1e-8)
+    assert hot.max_temperature > plain.max_temperature + 5.0
