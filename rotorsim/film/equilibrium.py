@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .linearized import linearize
+from .linearized import stiffness_matrix
 from .state import FilmState
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ class PlainSearch:
         if not carried > 0.0:
             self.unreachable = eps >= ECCENTRICITY_LIMITS[1] * (1.0 - 1e-9)
             return self._at(xi + 1.0), 1.0
-        stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
+        stiffness = stiffness_matrix(state.operator, state.solution, self.multiplicity)
         # dW/de from dF = -K de and W = |F|
         growth = -float(state.force @ stiffness[:, 0]) / carried
         slope = max(growth * self.clearance * eps * (1.0 - eps) / carried, 0.3)
@@ -82,7 +82,7 @@ class LoadSearch:
     def __call__(self, state: FilmState) -> tuple[Position, float]:
         """Newton's next position, and how far the force is off, relative to the load."""
         missing = state.force + self.load
-        stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
+        stiffness = stiffness_matrix(state.operator, state.solution, self.multiplicity)
         off = float(np.hypot(*missing) / np.hypot(*self.load))
         step = _newton_step(stiffness, missing, self.clearance)
         position = np.array(state.position)
@@ -123,7 +123,7 @@ class AttitudeSearch:
         size = float(np.hypot(*state.force))
         if not size > 0.0:
             return self.at(angle - 0.2), 1.0
-        stiffness, _ = linearize(state.operator, state.solution, self.multiplicity)
+        stiffness = stiffness_matrix(state.operator, state.solution, self.multiplicity)
         along = self.eccentricity * np.array([-math.sin(angle), math.cos(angle)])
         turn = -stiffness @ along  # dF/d(angle)
         carried = math.atan2(-state.force[1], -state.force[0])

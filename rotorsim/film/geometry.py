@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import Bearing
+from .kernels import kernel
 
 Array = NDArray[np.float64]
 
@@ -62,28 +63,73 @@ class Thickness:
         return float(min(part.min() for part in parts))
 
 
-def film_thickness(
-    bearing: Bearing,
-    theta_faces: Array,
-    y_faces: Array,
-    position: tuple[float, float],
-) -> Thickness:
-    """H = c - e_x cos(theta) - e_y sin(theta) + lobes, e following the journal's tilt along y."""
-    theta = 0.5 * (theta_faces[1:] + theta_faces[:-1])
-    y = 0.5 * (y_faces[1:] + y_faces[:-1])
-    # Faces shared by two lobes belong to both: evaluate each lobe from just inside the cell.
+@dataclass(frozen=True)
+class Stations:
+    """Where the film thickness is evaluated, and the bore there.
+
+    Attributes
+    ----------
+    cos, sin : (3, n) arrays
+        Of the angle at centres, west faces and east faces.
+    bore : (3, n) array
+        Clearance and lobes: the film thickness around a centred journal [m]. On a face shared by
+        two lobes each cell sees its own.
+    y, y_faces : (m,) and (m + 1,) arrays
+        [m]
+    tilt : tuple of float
+        [rad]
+    """
+
+    cos: Array
+    sin: Array
+    bore: Array
+    y: Array
+    y_faces: Array
+    tilt: tuple[float, float]
+
+
+def stations(bearing: Bearing, theta_faces: Array, y_faces: Array) -> Stations:
+    """Stations of a mesh."""
     inward = 1e-9 * np.diff(theta_faces)
-
-    def thickness(angle: Array, lobe_angle: Array, along: Array) -> Array:
-        ex = position[0] + bearing.tilt[0] * along
-        ey = position[1] + bearing.tilt[1] * along
-        round_part = bearing.radial_clearance + bore_offset(bearing, lobe_angle)
-        return round_part[:, None] - np.cos(angle)[:, None] * ex - np.sin(angle)[:, None] * ey
-
-    return Thickness(
-        center=thickness(theta, theta, y),
-        west=thickness(theta_faces[:-1], theta_faces[:-1] + inward, y),
-        east=thickness(theta_faces[1:], theta_faces[1:] - inward, y),
-        south=thickness(theta, theta, y_faces[:-1]),
-        north=thickness(theta, theta, y_faces[1:]),
+    theta = np.stack(
+        [0.5 * (theta_faces[1:] + theta_faces[:-1]), theta_faces[:-1], theta_faces[1:]]
     )
+    inside = theta + np.stack([np.zeros_like(inward), inward, -inward])
+    return Stations(
+        cos=np.cos(theta),
+        sin=np.sin(theta),
+        bore=bearing.radial_clearance + bore_offset(bearing, inside),
+        y=0.5 * (y_faces[1:] + y_faces[:-1]),
+        y_faces=y_faces,
+        tilt=bearing.tilt,
+    )
+
+
+def film_thickness(at: Stations, position: tuple[float, float]) -> Thickness:
+    """H = c - e_x cos(theta) - e_y sin(theta) + lobes, e following the journal's tilt along y."""
+    h = np.empty((5, at.cos.shape[1], at.y.size))
+    _thickness(
+        at.cos, at.sin, at.bore, at.y, at.y_faces, at.tilt[0], at.tilt[1], position[0],
+        position[1], h,
+    )  # fmt: skip
+    return Thickness(center=h[0], west=h[1], east=h[2], south=h[3], north=h[4])
+
+
+def thinnest_film(at: Stations, position: tuple[float, float]) -> float:
+    """Smallest film thickness on any face or centre [m]; not positive outside the bore."""
+    ends = at.y_faces[[0, -1]][:, None, None]
+    ex, ey = position[0] + at.tilt[0] * ends, position[1] + at.tilt[1] * ends
+    return float((at.bore - ex * at.cos - ey * at.sin).min())
+
+
+@kernel
+def _thickness(cos, sin, bore, y, y_faces, tilt_x, tilt_y, ex, ey, h):
+    n, m = cos.shape[1], y.size
+    for i in range(n):
+        for j in range(m):
+            x_j, y_j = ex + tilt_x * y[j], ey + tilt_y * y[j]
+            for face in range(3):
+                h[face, i, j] = bore[face, i] - x_j * cos[face, i] - y_j * sin[face, i]
+            for end in range(2):
+                x_j, y_j = ex + tilt_x * y_faces[j + end], ey + tilt_y * y_faces[j + end]
+                h[3 + end, i, j] = bore[0, i] - x_j * cos[0, i] - y_j * sin[0, i]

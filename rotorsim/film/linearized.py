@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .cavitation import PressureSolution
+from .kernels import kernel
 from .operator import FilmOperator
 
 Array = NDArray[np.float64]
@@ -33,47 +34,72 @@ def linearize(
     """Stiffness [N/m] and damping [N s/m], (2, 2) each, in the film's frame, viscosity frozen."""
     # Where the film is ruptured only the oil in it is squeezed.
     squeezed = operator.area if solution.liquid is None else solution.liquid * operator.area
-    right = np.stack(
-        [
-            displacement_source(operator, solution.raw, -operator.cos),
-            displacement_source(operator, solution.raw, -operator.sin),
-            operator.cos[0] * squeezed,
-            operator.sin[0] * squeezed,
-        ]
-    )
-    perturbed = solution.factor.solve(np.where(operator.held, 0.0, right))
-    perturbed = np.where(solution.full, perturbed, 0.0) * operator.area
-    normals = np.stack(
-        [operator.cos[0] + 0.0 * operator.area, operator.sin[0] + 0.0 * operator.area]
-    )
-    # dF_i/dx_j = -int p_j n_i dA, and K = -dF/dx
-    matrices = multiplicity * np.einsum("inm,jnm->ij", normals, perturbed)
+    velocities = np.stack([operator.cos[0] * squeezed, operator.sin[0] * squeezed])
+    right = np.concatenate([displacement_sources(operator, solution.raw), velocities])
+    right[:, operator.held] = 0.0
+    matrices = _reaction(operator, solution, multiplicity, right)
     return matrices[:, :2].copy(), matrices[:, 2:].copy()
 
 
-def displacement_source(operator: FilmOperator, pressure: Array, thickness_change: Array) -> Array:
-    """What a change of thickness adds to each cell's continuity [m3/s per m].
+def stiffness_matrix(
+    operator: FilmOperator, solution: PressureSolution, multiplicity: float
+) -> Array:
+    """Stiffness alone [N/m], (2, 2): the Jacobian of the force with its sign turned."""
+    right = displacement_sources(operator, solution.raw)
+    return _reaction(operator, solution, multiplicity, right)
 
-    Parameters
-    ----------
-    thickness_change : (3, n, 1) array
-        dh per unit displacement at centres, west faces and east faces.
+
+def _reaction(
+    operator: FilmOperator, solution: PressureSolution, multiplicity: float, right: Array
+) -> Array:
+    """-dF_i/dq_j = int p_j n_i dA for each right-hand side j, (2, sources)."""
+    perturbed = solution.factor.solve(right)
+    perturbed = np.where(solution.full, perturbed, 0.0) * operator.area
+    around = perturbed.sum(axis=2)
+    normals = np.stack([operator.cos[0, :, 0], operator.sin[0, :, 0]])
+    return multiplicity * normals @ around.T
+
+
+def displacement_sources(operator: FilmOperator, pressure: Array) -> Array:
+    """What unit displacements along x and y add to each cell's continuity [m3/s per m], (2, n, m).
+
+    Displaced along x the film changes by -cos(theta), along y by -sin(theta).
     """
-    change = np.stack(
-        [
-            np.broadcast_to(thickness_change[which], pressure.shape)
-            for which in (1, 2, 0, 0)  # west, east, south, north
-        ]
-    )
-    relative = change / operator.face_thickness
-    difference = neighbour_pressure(operator, pressure) - pressure
-    source = np.sum(3.0 * relative * operator.conductance * difference, axis=0)
-    return source + relative[0] * operator.drag[0] - relative[1] * operator.drag[1]
+    sources = np.zeros((2, *pressure.shape))
+    _sources(
+        operator.conductance, operator.linked, operator.outer_pressure, operator.face_thickness,
+        operator.drag, operator.held, operator.cos[:, :, 0], operator.sin[:, :, 0], pressure,
+        sources,
+    )  # fmt: skip
+    return sources
 
 
-def neighbour_pressure(operator: FilmOperator, pressure: Array) -> Array:
-    """Pressure behind each face [Pa], (4, n, m)."""
-    south, north = np.zeros_like(pressure), np.zeros_like(pressure)
-    south[:, 1:], north[:, :-1] = pressure[:, :-1], pressure[:, 1:]
-    inner = np.stack([np.roll(pressure, 1, axis=0), np.roll(pressure, -1, axis=0), south, north])
-    return np.where(operator.linked, inner, operator.outer_pressure)
+@kernel
+def _sources(conductance, linked, outer, face_h, drag, held, cos, sin, pressure, sources):
+    n, m = pressure.shape
+    for i in range(n):
+        before = i - 1 if i > 0 else n - 1
+        after = i + 1 if i < n - 1 else 0
+        for j in range(m):
+            if held[i, j]:
+                continue
+            for face in range(4):
+                k, q, station = i, j, 0
+                if face == 0:
+                    k, station = before, 1
+                elif face == 1:
+                    k, station = after, 2
+                elif face == 2:
+                    q = max(j - 1, 0)
+                else:
+                    q = min(j + 1, m - 1)
+                beyond = pressure[k, q] if linked[face, i, j] else outer[face, i, j]
+                # conductance goes with h^3, drag with h
+                rate = 3.0 * conductance[face, i, j] * (beyond - pressure[i, j])
+                if face == 0:
+                    rate += drag[0, i, j]
+                elif face == 1:
+                    rate -= drag[1, i, j]
+                rate /= face_h[face, i, j]
+                sources[0, i, j] -= rate * cos[station, i]
+                sources[1, i, j] -= rate * sin[station, i]

@@ -18,7 +18,7 @@ from ..model import (
     ThermalSettings,
 )
 from .cavitation import solve_pressure
-from .geometry import film_thickness
+from .geometry import Stations, film_thickness, stations
 from .jfo import solve_jfo
 from .layers import LayerIntegrals
 from .linearized import film_force
@@ -43,6 +43,7 @@ class FilmProblem:
         [rad/s]
     mesh : FilmMesh
     topology : FaceTopology
+    stations : Stations
     """
 
     bearing: Bearing
@@ -52,6 +53,7 @@ class FilmProblem:
     speed: float
     mesh: FilmMesh
     topology: FaceTopology
+    stations: Stations
 
     @property
     def surface_speed(self) -> float:
@@ -83,6 +85,7 @@ def film_problem(
         speed=speed,
         mesh=mesh,
         topology=face_topology(mesh, supply),
+        stations=stations(bearing, mesh.theta_faces, mesh.y_faces),
     )
 
 
@@ -97,7 +100,7 @@ def film_state(
 ) -> FilmState:
     """Pressure and force with the journal at `position` [m], moving with `velocity` [m/s]."""
     mesh = problem.mesh
-    thickness = film_thickness(problem.bearing, mesh.theta_faces, mesh.y_faces, position)
+    thickness = film_thickness(problem.stations, position)
     operator = film_operator(problem.topology, thickness, layers, problem.surface_speed)
     squeeze = None
     if velocity != (0.0, 0.0):

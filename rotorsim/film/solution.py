@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from ..model import Bearing, Case, EccentricityTarget, LoadTarget
 from ..status import SolveStatus
 from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
-from .geometry import film_thickness
+from .geometry import stations, thinnest_film
 from .layers import isoviscous_layers
 from .problem import FilmProblem, film_problem, film_state
 from .state import FilmState
-from .thd import TEMPERATURE_LIMITS, Heat, ThermalFilm, solve_thermal_film, uniform_heat
+from .thd import TEMPERATURE_LIMITS, TOLERANCE, Heat, ThermalFilm, solve_thermal_film, uniform_heat
 
 Array = NDArray[np.float64]
 Position = tuple[float, float]
@@ -24,6 +24,8 @@ Search = PlainSearch | LoadSearch | AttitudeSearch
 
 FORCE_TOLERANCE = 1e-8
 """Relative force residual at which the position counts as found."""
+ROUGH_TOLERANCE = 0.02
+"""The same, and change of log viscosity, while the mesh still follows the position."""
 MAX_POSITION_STEPS = 60
 MAX_MESHES = 5
 """Times that the mesh may be graded anew for the position found."""
@@ -94,6 +96,11 @@ class _Iterate:
     iterations: int
     residual: float
 
+    @property
+    def heat(self) -> Heat | None:
+        """Temperatures, if the film is thermal."""
+        return self.thermal.heat if self.thermal is not None else None
+
 
 def solve_film(case: Case, speed: float, *, initial: WarmStart | None = None) -> FilmSolution:
     """The film of `case` at `speed` [rad/s], at the eccentricity or under the load it asks for."""
@@ -111,28 +118,46 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
         film = _iterate(problem, position, None, initial)
         return _conclude(problem, film, _load_line(film.state), None, film.iterations)
     eps = math.hypot(*initial.position) / clearance if initial else 0.5
-    heat = initial
-    search = PlainSearch(target.load, clearance, 2.0)
-    total = 0
-    meshes = 0
+    warm, search, effort = initial, PlainSearch(target.load, clearance, 2.0), _Effort()
     while True:
-        meshes += 1
         level = graded_eccentricity(eps)
         problem = film_problem(case, speed, case.bearing, (level * clearance, 0.0))
-        if problem.is_thermal and heat is None:
-            cold = _iterate_isothermal(problem, (eps * clearance, 0.0), search, None)
-            eps = min(cold.state.position[0] / clearance, 0.9)
         search.unreachable = False
-        film = _iterate(problem, (eps * clearance, 0.0), search, heat)
-        total += film.iterations
+        if problem.is_thermal and warm is None:
+            warm = _cold_start(problem, (eps * clearance, 0.0), search)
+            eps = min(warm.position[0] / clearance, 0.9)
+            continue
+        film = _iterate(problem, (eps * clearance, 0.0), search, warm, rough=effort.rough)
         eps = film.state.position[0] / clearance
-        heat = WarmStart(
-            film.state.position, film.thermal.heat if film.thermal else None,
-            film.state.solution.full,
-        )  # fmt: skip
-        if search.unreachable or graded_eccentricity(eps) == level or meshes == MAX_MESHES:
-            break
-    return _conclude(problem, film, _load_line(film.state), search, total)
+        warm = WarmStart(film.state.position, film.heat, film.state.solution.full)
+        settled = graded_eccentricity(eps) == level
+        if effort.ends(film, settled, search):
+            return _conclude(problem, film, _load_line(film.state), search, effort.iterations)
+
+
+@dataclass
+class _Effort:
+    """First a rough solution on meshes that follow the position, then the real one."""
+
+    rough: bool = True
+    meshes: int = 0
+    iterations: int = 0
+
+    def ends(self, film: _Iterate, settled: bool, search: Search) -> bool:
+        """Take note of one solution; whether it is the last."""
+        self.meshes += 1
+        self.iterations += film.iterations
+        if self.rough:
+            self.rough = not settled and self.meshes < MAX_MESHES
+            return search.unreachable
+        return settled or search.unreachable or not film.converged or self.meshes > 2 * MAX_MESHES
+
+
+def _cold_start(problem: FilmProblem, position: Position, search: Search) -> WarmStart:
+    """Position of the isothermal film, for a thermal one to begin at."""
+    cold = _iterate_isothermal(problem, position, search, None, rough=True)
+    position = cold.state.position if cold.converged else position
+    return WarmStart(position, None, cold.state.solution.full)
 
 
 def graded_eccentricity(eps: float) -> float:
@@ -149,33 +174,25 @@ def _load_line(state: FilmState) -> float:
 def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
     """Any other film is solved in the load frame; a tilted plain one near its centre's."""
     position = initial.position if initial else _first_position(case)
-    heat, total = initial, 0
-    meshes = 0
+    warm, effort = initial, _Effort()
     while True:
-        meshes += 1
         frame = _frame_angle(case.bearing, position)
         bearing = case.bearing.turned(-frame)
         local = _turned(position, -frame)
         level = _graded_position(bearing, local)
         problem = film_problem(case, speed, bearing, level)
         search = _search(case, problem, frame)
-        if problem.is_thermal and heat is None:
-            cold = _iterate_isothermal(problem, local, search, None)
-            if cold.converged:
-                local = cold.state.position
-            search = _search(case, problem, frame)
-        film = _iterate(problem, local, search, heat)
-        total += film.iterations
+        if problem.is_thermal and warm is None:
+            warm = _cold_start(problem, local, search)
+            position = _turned(warm.position, frame)
+            continue
+        film = _iterate(problem, local, search, warm, rough=effort.rough)
         position = _turned(film.state.position, frame)
-        heat = WarmStart(
-            position, film.thermal.heat if film.thermal else None, film.state.solution.full
-        )
+        warm = WarmStart(position, film.heat, film.state.solution.full)
         settled = _graded_position(bearing, film.state.position) == level
-        turned = abs(_frame_angle(case.bearing, position) - frame)
-        found = settled and turned < 1e-3
-        if search.unreachable or not film.converged or found or meshes == MAX_MESHES:
-            break
-    return _conclude(problem, film, frame, search, total)
+        settled = settled and abs(_frame_angle(case.bearing, position) - frame) < 1e-3
+        if effort.ends(film, settled, search):
+            return _conclude(problem, film, frame, search, effort.iterations)
 
 
 def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | AttitudeSearch:
@@ -187,9 +204,7 @@ def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | Atti
 
 
 def _thinnest(problem: FilmProblem) -> Callable[[Position], float]:
-    mesh, bearing = problem.mesh, problem.bearing
-    ends = mesh.y_faces[[0, -2, -1]]
-    return lambda position: film_thickness(bearing, mesh.theta_faces, ends, position).minimum
+    return lambda position: thinnest_film(problem.stations, position)
 
 
 def _first_position(case: Case) -> Position:
@@ -210,8 +225,8 @@ def _frame_angle(bearing: Bearing, position: Position) -> float:
 
 def _graded_position(bearing: Bearing, position: Position) -> Position:
     """Position for which the mesh is graded, on a grid as fine as the film is thin."""
-    theta = np.linspace(0.0, 2.0 * math.pi, 181)
-    thin = film_thickness(bearing, theta, np.array([-1e-9, 1e-9]), position).minimum
+    around = stations(bearing, np.linspace(0.0, 2.0 * math.pi, 181), np.array([-1e-9, 1e-9]))
+    thin = thinnest_film(around, position)
     relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
     grid = 2.0 ** math.floor(math.log2(relative / 2.0)) * bearing.radial_clearance
     return round(position[0] / grid) * grid, round(position[1] / grid) * grid
@@ -223,29 +238,44 @@ def _turned(position: Position, angle: float) -> Position:
 
 
 def _iterate(
-    problem: FilmProblem, position: Position, search: Search | None, initial: WarmStart | None
+    problem: FilmProblem,
+    position: Position,
+    search: Search | None,
+    initial: WarmStart | None,
+    *,
+    rough: bool = False,
 ) -> _Iterate:
     if not problem.is_thermal:
-        return _iterate_isothermal(problem, position, search, initial)
+        return _iterate_isothermal(problem, position, search, initial, rough=rough)
     shape = (*problem.mesh.shape, problem.settings.mesh.cross_film)
     heat = initial.heat if initial else None
     if heat is None or heat.temperature.shape != shape:
         heat = uniform_heat(problem)
     film = solve_thermal_film(
-        problem, position, initial=heat, move=search, force_tolerance=FORCE_TOLERANCE
+        problem,
+        position,
+        initial=heat,
+        move=search,
+        force_tolerance=ROUGH_TOLERANCE if rough else FORCE_TOLERANCE,
+        tolerance=ROUGH_TOLERANCE if rough else TOLERANCE,
     )
     return _Iterate(film.state, film, film.converged, film.iterations, film.residual)
 
 
 def _iterate_isothermal(
-    problem: FilmProblem, position: Position, search: Search | None, initial: WarmStart | None
+    problem: FilmProblem,
+    position: Position,
+    search: Search | None,
+    initial: WarmStart | None,
+    *,
+    rough: bool = False,
 ) -> _Iterate:
     """The film at the supply temperature's viscosity."""
     viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
     layers = isoviscous_layers(problem.mesh.shape, viscosity)
     full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
-    off = 0.0
-    step, stuck = 0, 0
+    tolerance = ROUGH_TOLERANCE if rough else FORCE_TOLERANCE
+    off, step, stuck = 0.0, 0, 0
     while True:
         step += 1
         state = film_state(problem, position, layers, start=full)
@@ -254,9 +284,9 @@ def _iterate_isothermal(
             return _Iterate(state, None, state.solution.converged, state.solution.steps, 0.0)
         position, off = search(state)
         stuck = stuck + 1 if search.unreachable else 0
-        if off < FORCE_TOLERANCE or stuck >= 4 or step == MAX_POSITION_STEPS:
+        if off < tolerance or stuck >= 4 or step == MAX_POSITION_STEPS:
             break
-    done = off < FORCE_TOLERANCE and state.solution.converged
+    done = off < tolerance and state.solution.converged
     return _Iterate(state, None, done, step, off)
 
 
