@@ -39,6 +39,13 @@ if TYPE_CHECKING:
         threshold_speeds,
         track_modes,
     )
+    from .over_speed import (
+        JeffcottShaft,
+        RigidShaft,
+        RotorOnFilm,
+        rotor_modes,
+        rotor_thresholds,
+    )
     from .rates import (
         decay_rate_map,
         decay_rates,
@@ -91,6 +98,11 @@ _HOME = {
     "rigid_modes": "modes",
     "threshold_speeds": "modes",
     "track_modes": "modes",
+    "JeffcottShaft": "over_speed",
+    "RigidShaft": "over_speed",
+    "RotorOnFilm": "over_speed",
+    "rotor_modes": "over_speed",
+    "rotor_thresholds": "over_speed",
     "decay_rate_map": "rates",
     "decay_rates": "rates",
     "eigenvalues": "rates",
@@ -115,8 +127,11 @@ _HOME = {
 __all__ = [
     "Branches",
     "GeneralRotor",
+    "JeffcottShaft",
     "LoopMargins",
     "Propagation",
+    "RigidShaft",
+    "RotorOnFilm",
     "StabilityMap",
     "StateFeedback",
     "ThresholdSpeed",
@@ -142,7 +157,9 @@ __all__ = [
     "rigid_modes",
     "rigid_threshold",
     "rigid_thresholds",
+    "rotor_modes",
     "rotor_state_space",
+    "rotor_thresholds",
     "routh_coefficients",
     "sample_inputs",
     "second_order_state_matrix",

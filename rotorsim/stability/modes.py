@@ -78,6 +78,25 @@ class Branches:
         size = np.abs(a) ** 2 + np.abs(b) ** 2
         return np.divide(area, size, out=np.zeros_like(size), where=size > 0.0)
 
+    def whirl_sense(self, planes: Sequence[tuple[int, int]] = ((0, 1),)) -> Array:
+        """`whirl_direction` at the node where each mode moves most, (n, k).
+
+        Parameters
+        ----------
+        planes : sequence of (int, int)
+            Degrees of freedom x, y of the nodes.
+        """
+        size = np.stack([np.linalg.norm(self.shapes[..., list(p)], axis=-1) for p in planes])
+        sense = np.stack([self.whirl_direction(x, y) for x, y in planes])
+        return np.take_along_axis(sense, size.argmax(axis=0)[None], axis=0)[0]
+
+    def lowest(self, count: int) -> Branches:
+        """Keep `count` branches, those that reach the lowest frequencies."""
+        keep = np.sort(np.argsort(self.damped_frequency.min(axis=0), kind="stable")[:count])
+        return Branches(
+            self.parameter, self.eigenvalues[:, keep], self.shapes[:, keep], self.smooth
+        )
+
     def oscillating(self) -> Branches:
         """Keep one branch of each conjugate pair (Im >= 0 on the whole), as a Campbell diagram."""
         keep = np.flatnonzero(self.eigenvalues.imag.sum(axis=0) >= 0.0)

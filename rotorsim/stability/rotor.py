@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -118,6 +118,12 @@ class GeneralRotor:
                 source=self.source, key="bearing_nodes", value=nodes,
             )  # fmt: skip
 
+    @property
+    def whirl_planes(self) -> tuple[tuple[int, int], ...]:
+        """The x and y of every node."""
+        size, step = self.mass.shape[0], self.dofs_per_node
+        return tuple((first, first + 1) for first in range(0, size, step))
+
     def state_matrix(self, coefficients: Coefficients) -> Array:
         """(2n, 2n) state matrix on (q, q') at the coefficients' speed."""
         stiffness = self.stiffness.copy()
@@ -129,10 +135,22 @@ class GeneralRotor:
         return second_order_state_matrix(self.mass, damping, stiffness)
 
 
-def load_rotor(path: str | Path) -> GeneralRotor:
+def load_rotor(
+    path: str | Path,
+    bearing_nodes: Sequence[int] | None = None,
+    dofs_per_node: int | None = None,
+) -> GeneralRotor:
     """Read a rotor from .npz or .mat with M, D, G, K, ``bearing_nodes`` and ``dofs_per_node``.
 
     D and G may be left out (zero), ``dofs_per_node`` too (4).
+
+    Parameters
+    ----------
+    path : str or Path
+    bearing_nodes : sequence of int, optional
+        In place of the file's, counted from 0.
+    dofs_per_node : int, optional
+        In place of the file's.
 
     Raises
     ------
@@ -140,7 +158,11 @@ def load_rotor(path: str | Path) -> GeneralRotor:
         The file cannot be read, or its matrices do not make a rotor.
     """
     source = Path(path)
-    data = _read(source)
+    data = dict(_read(source))
+    if bearing_nodes is not None:
+        data["bearing_nodes"] = np.asarray(bearing_nodes)
+    if dofs_per_node is not None:
+        data["dofs_per_node"] = dofs_per_node
     missing = [name for name in ("M", "K", "bearing_nodes") if name not in data]
     if missing:
         raise InputError(f"arrays are missing: {', '.join(missing)}", source=source)

@@ -7,16 +7,14 @@ from typing import TYPE_CHECKING
 
 import control
 import numpy as np
-from numpy.typing import NDArray
 
 from ..errors import InputError
-from .matrices import second_order_state_matrix, state_matrix
+from .jeffcott import jeffcott_matrices
+from .matrices import state_matrix
 
 if TYPE_CHECKING:
     from ..table import Coefficients
     from .rotor import GeneralRotor
-
-Array = NDArray[np.float64]
 
 
 def state_space(coefficients: Coefficients, mass: float, name: str = "rotor") -> control.StateSpace:
@@ -85,21 +83,10 @@ def jeffcott_state_space(
         A mass or stiffness is not above zero, or the damping matrix is singular with massless
         journals (their motion is then not determined).
     """
-    for key, value in (("disc_mass", disc_mass), ("shaft_stiffness", shaft_stiffness)):
-        _positive(value, key)
-    for key, value in (("journal_mass", journal_mass), ("shaft_damping", shaft_damping)):
-        if not (np.isfinite(value) and value >= 0.0):
-            raise InputError("must be 0 or more", key=key, value=value)
-    eye, zero = np.eye(2), np.zeros((2, 2))
-    ks = shaft_stiffness * eye
-    stiffness = np.block([[ks, -ks], [-ks, ks + coefficients.stiffness]])
-    damping = np.block([[shaft_damping * eye, zero], [zero, coefficients.damping]])
-    if journal_mass > 0.0:
-        masses = np.diag([disc_mass, disc_mass, journal_mass, journal_mass])
-        a = second_order_state_matrix(masses, damping, stiffness)
-        b = np.vstack([np.zeros((4, 4)), np.linalg.inv(masses)])
-    else:
-        a, b = _massless_journals(coefficients.damping, stiffness, disc_mass, shaft_damping)
+    a, b = jeffcott_matrices(
+        coefficients.stiffness, coefficients.damping, disc_mass, shaft_stiffness, journal_mass,
+        shaft_damping,
+    )  # fmt: skip
     states = ["disc_x", "disc_y", "journal_x", "journal_y"]
     states += ["disc_vx", "disc_vy", "journal_vx", "journal_vy"][: a.shape[0] - 4]
     return control.StateSpace(
@@ -109,26 +96,6 @@ def jeffcott_state_space(
         outputs=[f"{part}_displacement_{axis}" for part in ("disc", "journal") for axis in "xy"],
         name=name,
     )  # fmt: skip
-
-
-def _massless_journals(
-    damping: Array, stiffness: Array, disc_mass: float, shaft_damping: float
-) -> tuple[Array, Array]:
-    """Six states: the film alone, C q' = F - K q + k_s (disc - q), moves the journal."""
-    if np.linalg.cond(damping) > 1e12:
-        raise InputError(
-            "singular: massless journals need damping in every direction; give a journal_mass",
-            key="damping",
-            value=damping.tolist(),
-        )
-    a, b = np.zeros((6, 6)), np.zeros((6, 4))
-    a[:2, 4:] = np.eye(2)
-    a[2:4, :4] = -np.linalg.solve(damping, stiffness[2:])
-    a[4:, :4] = -stiffness[:2] / disc_mass
-    a[4:, 4:] = -shaft_damping / disc_mass * np.eye(2)
-    b[2:4, 2:] = np.linalg.inv(damping)
-    b[4:, :2] = np.eye(2) / disc_mass
-    return a, b
 
 
 def rotor_state_space(
