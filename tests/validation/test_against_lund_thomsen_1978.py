@@ -31,8 +31,10 @@ kink between this row and the one before: a coarse mesh is least trustworthy her
 """
 
 
-def _solve(eccentricity: float, mesh: tuple[int, int]):
-    case = isothermal_case(eccentricity, length_to_diameter=0.5, mesh=mesh, grooves=split_grooves())
+def _solve(eccentricity: float, mesh: tuple[int, int], length_to_diameter: float = 0.5):
+    case = isothermal_case(
+        eccentricity, length_to_diameter=length_to_diameter, mesh=mesh, grooves=split_grooves()
+    )
     point, _ = solve_case(case, SPEED)
     assert point.converged, point.message
     return point
@@ -58,10 +60,14 @@ def test_coefficients(row):
     )
 
 
-@pytest.mark.parametrize("eccentricity", [0.372, 0.655])
-def test_a_second_method_agrees(eccentricity):
-    second = element_film(eccentricity, 0.5, refine=3, groove_extent=math.radians(20.0))
-    point = _solve(eccentricity, (320, 96))
+@pytest.mark.parametrize(
+    ("eccentricity", "length_to_diameter"), [(0.372, 0.5), (0.655, 0.5), (0.25, 1.0), (0.6, 1.0)]
+)
+def test_a_second_method_agrees(eccentricity, length_to_diameter):
+    second = element_film(
+        eccentricity, length_to_diameter, refine=3, groove_extent=math.radians(20.0)
+    )
+    point = _solve(eccentricity, (320, 96), length_to_diameter)
     sommerfeld = 1.0 / (2.0 * math.pi * second.sommerfeld)
     assert point.sommerfeld_number == pytest.approx(sommerfeld, rel=2.0 * SECOND_METHOD)
     assert math.degrees(point.attitude_angle) == pytest.approx(
