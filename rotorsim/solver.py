@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 from .checks import regime_warnings
 from .errors import InputError
 from .film.banded import SingularFilmError
+from .film.following import following_stiffness
 from .film.heat import heat_totals, wall_temperatures
 from .film.linearized import linearize
 from .film.losses import friction_force, liquid_fraction, peak, side_flow
 from .film.solution import FilmSolution, WarmStart, solve_film
-from .model import Case, LoadTarget, ThermalModel
+from .model import Case, LoadTarget, ThermalModel, ViscosityResponse
 from .operating_point import FilmFields, HeatBalance, OperatingPoint
 from .stability.whirl import rigid_threshold
 from .status import SolveStatus
@@ -24,6 +25,10 @@ if TYPE_CHECKING:
     from .scenario import Scenario
 
 Array = NDArray[np.float64]
+FOLLOWING = ViscosityResponse.FOLLOWING
+PRESSURE_LIMIT = 400e6
+"""[Pa]; a load that needs more than this is out of the model's range."""
+_WITH_NUMBERS = (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED, SolveStatus.OUT_OF_RANGE)
 Choice = TypeVar("Choice")
 
 
@@ -118,6 +123,11 @@ def operating_point(
     """Results of a solved film, turned into the load frame."""
     problem, state = solution.problem, solution.state
     stiffness, damping = linearize(state.operator, state.solution, problem.mesh.multiplicity)
+    status, message = solution.status, solution.message
+    if solution.thermal is not None and case.film.viscosity_response is FOLLOWING:
+        stiffness, settled = following_stiffness(problem, solution.thermal)
+        if not settled and status is SolveStatus.CONVERGED:
+            status, message = SolveStatus.NOT_CONVERGED, "a displaced film did not converge"
     turn = _rotation(solution.frame)
     stiffness, damping = turn @ stiffness @ turn.T, turn @ damping @ turn.T
     center = turn @ np.array(state.position)
@@ -144,10 +154,11 @@ def operating_point(
         "side_flow": side_flow(problem, state),
         "min_film_thickness": thinnest,
     }  # fmt: skip
-    status, message = solution.status, solution.message
+    if status is SolveStatus.CONVERGED and isinstance(case.target, LoadTarget):
+        status, message = _within_pressure(numbers["max_pressure"])
     finite = all(math.isfinite(v) for v in numbers.values()) and np.isfinite(stiffness).all()
     threshold = None
-    if finite and status in (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED):
+    if finite and status in _WITH_NUMBERS:
         threshold = rigid_threshold(
             stiffness, damping, speed, load=load, radial_clearance=clearance
         )
@@ -177,6 +188,17 @@ def operating_point(
         heat_balance=_heat_balance(solution),
         fields=_fields(solution, fraction) if keep_fields else None,
     )  # fmt: skip
+
+
+def _within_pressure(max_pressure: float) -> tuple[SolveStatus, str]:
+    """Whether a rigid bearing and an oil of constant viscosity mean anything at this pressure."""
+    if max_pressure <= PRESSURE_LIMIT:
+        return SolveStatus.CONVERGED, ""
+    return SolveStatus.OUT_OF_RANGE, (
+        f"the load is carried only at {max_pressure / 1e6:.0f} MPa, above "
+        f"{PRESSURE_LIMIT / 1e6:.0f} MPa: bearing and shaft would yield, and the oil thicken; "
+        "reduce the load, or raise speed, viscosity or size"
+    )
 
 
 def min_film_thickness(solution: FilmSolution) -> float:

@@ -152,6 +152,7 @@ def solve_thermal_film(
     *,
     initial: Heat | None = None,
     move: Move | None = None,
+    held: NDArray[np.bool_] | None = None,
     force_tolerance: float = 1e-7,
     tolerance: float = TOLERANCE,
     max_iterations: int = MAX_ITERATIONS,
@@ -166,6 +167,8 @@ def solve_thermal_film(
         A neighbouring solution.
     move : callable, optional
         Gives the next position; called once an iteration.
+    held : (n, m) bool array, optional
+        The full cells, taken as given throughout.
 
     Notes
     -----
@@ -184,7 +187,7 @@ def solve_thermal_film(
     mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 3)
     release, stuck = FREEZE_AFTER, 0
     law, bush = problem.lubricant.law, _bush_of(problem)
-    full, frozen, leaving, history = None, None, None, []
+    full, frozen, leaving, history = None, held, None, []
     while True:
         viscosity = law.viscosity(heat.temperature)
         state = film_state(problem, position, layer_integrals(viscosity), start=full, frozen=frozen)
@@ -197,7 +200,7 @@ def solve_thermal_film(
         target, off = (position, 0.0) if move is None else move(state)
         stuck = stuck + 1 if move is not None and move.unreachable else 0
         done = residual < tolerance and off < force_tolerance
-        if done and state.solution.violations > VIOLATIONS_ALLOWED * full.size:
+        if done and held is None and state.solution.violations > VIOLATIONS_ALLOWED * full.size:
             done, frozen, release = False, None, len(history) + FREEZE_AFTER
         elif len(history) >= release and frozen is None:
             frozen = full

@@ -19,6 +19,7 @@ from .settings import (
     ShaftModel,
     ThermalModel,
     ThermalSettings,
+    ViscosityResponse,
 )
 
 __all__ = [
@@ -42,5 +43,6 @@ __all__ = [
     "ThermalModel",
     "ThermalSettings",
     "ViscosityLaw",
+    "ViscosityResponse",
     "WaltherViscosity",
 ]

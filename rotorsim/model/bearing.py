@@ -48,7 +48,10 @@ class Groove:
             self.extent,
         )
         _require(
-            self.length is None or self.length > 0.0, "must be above 0", "groove.length", self.length
+            self.length is None or self.length > 0.0,
+            "must be above 0",
+            "groove.length",
+            self.length,
         )
         _require(
             math.isfinite(self.supply_pressure) and self.supply_pressure >= 0.0,

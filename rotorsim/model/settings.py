@@ -59,6 +59,15 @@ class ShaftModel(StrEnum):
     GIVEN = "given"
 
 
+class ViscosityResponse(StrEnum):
+    """What the viscosity does while the journal is displaced, for the stiffness."""
+
+    FROZEN = "frozen"
+    """Nothing: oil and walls need far longer than a turn to warm up."""
+    FOLLOWING = "following"
+    """It follows, as in a displacement so slow that the film stays in thermal equilibrium."""
+
+
 class RupturedFriction(StrEnum):
     """Which part of the ruptured sector counts in the reported friction."""
 
@@ -99,6 +108,7 @@ class FilmSettings:
     inception: Inception = Inception.MAX_FILM
     mesh: MeshSize = field(default_factory=MeshSize)
     ruptured_friction: RupturedFriction = RupturedFriction.LIQUID
+    viscosity_response: ViscosityResponse = ViscosityResponse.FROZEN
 
 
 @dataclass(frozen=True)

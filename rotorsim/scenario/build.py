@@ -60,7 +60,13 @@ def film_settings(table: FilmTable) -> FilmSettings:
             f"has more than {MAX_CELLS} cells; the default is 156 x 48 x 24 x 24",
             key="film.mesh",
         )
-    return FilmSettings(table.cavitation, table.inception, mesh, table.ruptured_friction)
+    return FilmSettings(
+        table.cavitation,
+        table.inception,
+        mesh,
+        table.ruptured_friction,
+        table.viscosity_response,
+    )
 
 
 def clearances(table: BearingTable) -> tuple[float, ...]:

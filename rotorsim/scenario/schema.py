@@ -17,6 +17,7 @@ from ..model import (
     RupturedFriction,
     ShaftModel,
     ThermalModel,
+    ViscosityResponse,
 )
 from .fields import (
     AS_LIST,
@@ -125,6 +126,9 @@ class FilmTable(Table):
     mesh: MeshTable = MeshTable()
     ruptured_friction: Annotated[RupturedFriction, choice(RupturedFriction)] = (
         RupturedFriction.LIQUID
+    )
+    viscosity_response: Annotated[ViscosityResponse, choice(ViscosityResponse)] = (
+        ViscosityResponse.FROZEN
     )
 
 
