@@ -29,7 +29,8 @@ FREQUENCIES = 6
 
 def read_coefficients(path: str | Path) -> dict[str, np.ndarray]:
     """Columns of a coefficient table in SI units, as `rotorsim export --to csv` writes it."""
-    rows = list(csv.DictReader(Path(path).read_text(encoding="utf-8").splitlines()))
+    lines = Path(path).read_text(encoding="utf-8").splitlines()
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
     columns = {name.split(" ")[0]: name for name in rows[0]}
     return {
         name: np.array([float(row[columns[name]]) for row in rows]) for name in ("speed", *NAMES)

@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .actuator import ActuatedForce
     from .control import (
         LoopMargins,
         StateFeedback,
@@ -77,6 +78,7 @@ if TYPE_CHECKING:
     )
 
 _HOME = {
+    "ActuatedForce": "actuator",
     "LoopMargins": "control",
     "StateFeedback": "control",
     "design_lqr": "control",
@@ -125,6 +127,7 @@ _HOME = {
 }
 
 __all__ = [
+    "ActuatedForce",
     "Branches",
     "GeneralRotor",
     "JeffcottShaft",

@@ -16,6 +16,9 @@ from .modes import Branches, track_modes
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+_NO_GAIN = 1e9
+"""Factors of a loop gain above this are no factors any more."""
+
 
 def receptance(system: control.StateSpace, frequency: ArrayLike) -> ComplexArray:
     """Displacement per force, shape (n_output, n_input, n_frequency) [m/N].
@@ -264,7 +267,9 @@ def loop_margins(system: control.StateSpace, feedback: StateFeedback, axis: int)
     gains = np.atleast_1d(np.asarray(gains, dtype=float))
     phases = np.atleast_1d(np.asarray(phases, dtype=float))
     distances = np.atleast_1d(np.asarray(distances, dtype=float))
-    above, below = gains[gains > 1.0], gains[(gains > 0.0) & (gains < 1.0)]
+    # A crossing at an infinite gain comes out as a very large one.
+    above = gains[(gains > 1.0) & (gains < _NO_GAIN)]
+    below = gains[(gains > 1.0 / _NO_GAIN) & (gains < 1.0)]
     closed = system.A - system.B @ feedback.gain
     return LoopMargins(
         gain_increase=float(above.min()) if above.size else np.inf,
