@@ -4,7 +4,10 @@ Everything is SI and in the load frame. `simulate(OrbitProblem(...))` gives an `
 `simulate_linear` is the short way with given stiffness and damping.
 """
 
+from .clearance import minimum_film
 from .equilibrium import find_equilibrium, linearize_force
+from .film_force import LoadedFilm, SolvedFilmForce, can_be_mapped, loaded_film
+from .film_map import cache_folder, film_force_map
 from .force_map import FilmMapForce, ForceMap
 from .forces import (
     BearingForce,
@@ -46,6 +49,7 @@ __all__ = [
     "Growth",
     "HarmonicForce",
     "LinearForce",
+    "LoadedFilm",
     "Method",
     "Modes",
     "Orbit",
@@ -55,17 +59,23 @@ __all__ = [
     "Recognition",
     "RotorModel",
     "ShortBearingForce",
+    "SolvedFilmForce",
     "Spectrum",
     "SpeedSchedule",
     "StepForce",
+    "cache_folder",
+    "can_be_mapped",
     "cascade",
     "concatenate",
     "constant_coefficients",
+    "film_force_map",
     "find_equilibrium",
     "fit_modes",
     "growth_rate",
     "jeffcott_rotor",
     "linearize_force",
+    "loaded_film",
+    "minimum_film",
     "orbit_ellipse",
     "poincare_points",
     "recognise",

@@ -154,8 +154,12 @@ def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
     tolerance = np.full(state.size, 1e-3 * problem.tolerance * clearance)
     tolerance[size : 2 * size] *= max(problem.schedule.speeds)
 
+    plain = problem.bearing is None or (problem.bearing.is_plain and problem.bearing.is_symmetric)
+
     def touch(_t: float, s: Array) -> float:
-        return clearance - least - math.hypot(s[0], s[1])
+        if plain:
+            return clearance - least - math.hypot(s[0], s[1])
+        return float(problem.film_at(s[:1], s[1:2])[0]) - least
 
     touch.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
     touch.direction = -1.0  # pyright: ignore[reportFunctionMemberAccess]
@@ -225,6 +229,7 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         fx=film[:, 0],
         fy=film[:, 1],
         displacements=np.ascontiguousarray(y[:size].T),
+        min_film=problem.film_at(y[0], y[1]),
         samples_per_revolution=problem.samples_per_revolution,
         radial_clearance=problem.force.radial_clearance,
         equilibrium=run.equilibrium,
@@ -234,4 +239,6 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         message=message,
         events=events,
         forced=bool(np.any(problem.rotor.unbalance)) or bool(problem.loads),
+        kind=problem.kind,
+        note=problem.note,
     )

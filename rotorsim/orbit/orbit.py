@@ -63,6 +63,8 @@ class Orbit:
         Film force on the journal [N].
     displacements : (n, 2k) array
         Of all k stations of the rotor [m]; the first two columns are x and y.
+    min_film : (n,) array
+        Smallest film thickness [m]; c - e in a plain bearing.
     samples_per_revolution : int
     radial_clearance : float
         [m]
@@ -75,6 +77,10 @@ class Orbit:
     events : tuple of OrbitEvent
     forced : bool
         Whether unbalance or a load varied in time; if not, a steady whirl is the film's own.
+    kind : str
+        What was simulated, for labels: ``free_decay``, ``run_up``, ...; may be empty.
+    note : str
+        What the film force takes for granted (see `rotorsim.orbit.film_force`).
     """
 
     t: Array
@@ -87,6 +93,7 @@ class Orbit:
     fx: Array
     fy: Array
     displacements: Array
+    min_film: Array
     samples_per_revolution: int
     radial_clearance: float
     equilibrium: tuple[float, float]
@@ -96,6 +103,8 @@ class Orbit:
     message: str = ""
     events: tuple[OrbitEvent, ...] = ()
     forced: bool = True
+    kind: str = ""
+    note: str = ""
 
     @property
     def revolutions(self) -> Array:
@@ -112,11 +121,6 @@ class Orbit:
         """Eccentricity over radial clearance [-]."""
         return self.eccentricity / self.radial_clearance
 
-    @property
-    def min_film(self) -> Array:
-        """Smallest film thickness of the plain bearing, c - e [m]."""
-        return self.radial_clearance - self.eccentricity
-
     def part(self, first: int, last: int | None = None, step: int = 1) -> Orbit:
         """Cut out samples first to last (excluded), every `step`-th, as an orbit of their own."""
         chosen = slice(first, last, step)
@@ -127,7 +131,7 @@ class Orbit:
         )
 
 
-_SERIES = ("t", "x", "y", "vx", "vy", "speed", "angle", "fx", "fy", "displacements")
+_SERIES = ("t", "x", "y", "vx", "vy", "speed", "angle", "fx", "fy", "displacements", "min_film")
 
 
 def concatenate(pieces: Iterable[Orbit]) -> Orbit:

@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..model import Bearing
+from .clearance import minimum_film
+from .film_force import SolvedFilmForce
 from .forces import BearingForce, LinearForce
 from .loads import Controller, Load
 from .rotor import RotorModel
@@ -63,10 +66,16 @@ class OrbitProblem:
     samples_per_revolution : int
     thermal_model : str
         Label of the film behind the force.
+    bearing : Bearing or None
+        In the load frame; its lobes and tilt then decide the film thickness. None: a plain bearing
+        of the force's clearance.
+    kind, note : str
+        Labels of the orbit.
     method : Method
     relative_tolerance : float or None
         Of one integration step; the absolute one is 1e-3 of it times the clearance. None: 1e-8
-        with linear coefficients, whose growth is to be measured, 1e-7 with a nonlinear film.
+        with linear coefficients, whose growth is to be measured, 1e-7 with a nonlinear film, 1e-5
+        with one that is solved at each step.
     """
 
     force: BearingForce
@@ -83,6 +92,9 @@ class OrbitProblem:
     stop_at_contact: bool = True
     samples_per_revolution: int = 64
     thermal_model: str = "isothermal"
+    bearing: Bearing | None = None
+    kind: str = ""
+    note: str = ""
     method: Method = Method.LSODA
     relative_tolerance: float | None = None
 
@@ -91,7 +103,15 @@ class OrbitProblem:
         """Relative tolerance in use."""
         if self.relative_tolerance is not None:
             return self.relative_tolerance
-        return 1e-8 if isinstance(self.force, LinearForce) else 1e-7
+        if isinstance(self.force, LinearForce):
+            return 1e-8
+        return 1e-5 if isinstance(self.force, SolvedFilmForce) else 1e-7
+
+    def film_at(self, x: Array, y: Array) -> Array:
+        """Smallest film thickness [m] with the journal at x, y [m]."""
+        if self.bearing is None:
+            return self.force.radial_clearance - np.hypot(x, y)
+        return minimum_film(self.bearing, x, y)
 
     def __post_init__(self) -> None:
         clearance = self.force.radial_clearance

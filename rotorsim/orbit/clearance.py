@@ -1,0 +1,60 @@
+"""How close the journal is to the bush, for any bore."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..film.geometry import bore_offset
+from ..model import Bearing
+
+Array = NDArray[np.float64]
+
+_ANGLES = 720
+_BLOCK = 4096
+"""Positions looked at together: bounds the memory."""
+
+
+def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
+    """Smallest film thickness [m] on the lands with the journal's centre at x, y [m].
+
+    Parameters
+    ----------
+    bearing : Bearing
+        In the frame of x and y.
+    x, y : (n,) arrays
+        At mid-plane [m].
+
+    Returns
+    -------
+    (n,) array
+        Zero or less where they touch. c - e for the plain, aligned bearing; else the least over
+        angles half a degree apart and over both ends of a tilted journal.
+    """
+    if bearing.is_plain and bearing.is_symmetric:
+        return bearing.radial_clearance - np.hypot(x, y)
+    theta = _land_angles(bearing)
+    bore = bearing.radial_clearance + bore_offset(bearing, theta)
+    cos, sin = np.cos(theta), np.sin(theta)
+    least = np.full(np.shape(x), np.inf)
+    ends = (0.0,) if bearing.is_symmetric else (-0.5 * bearing.length, 0.5 * bearing.length)
+    for end in ends:
+        ex, ey = x + bearing.tilt[0] * end, y + bearing.tilt[1] * end
+        for start in range(0, least.size, _BLOCK):
+            part = slice(start, start + _BLOCK)
+            h = bore - np.multiply.outer(ex[part], cos) - np.multiply.outer(ey[part], sin)
+            least[part] = np.minimum(least[part], h.min(axis=1))
+    return least
+
+
+def _land_angles(bearing: Bearing) -> Array:
+    """Angles [rad] that no full-length groove covers."""
+    theta = 2.0 * math.pi * np.arange(_ANGLES) / _ANGLES
+    land = np.ones(_ANGLES, dtype=bool)
+    for groove in bearing.grooves:
+        if groove.length is None or groove.length >= bearing.length * (1.0 - 1e-9):
+            away = (theta - groove.center + math.pi) % (2.0 * math.pi) - math.pi
+            land &= np.abs(away) > 0.5 * groove.extent
+    return theta[land]
