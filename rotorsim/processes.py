@@ -8,13 +8,13 @@ import signal
 import sys
 import threading
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
 from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from multiprocessing.connection import wait as wait_for_any
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .chunks import Chunk, result_or_failure, solve_chunk
 
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
     Points = tuple[OperatingPoint, ...]
 
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 _THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -45,6 +47,45 @@ def on_processes(
             except BrokenExecutor:
                 for chunk in list(running.values()):
                     yield from _one_by_one(chunk, solve_case)
+
+
+def map_on_processes(
+    function: Callable[[Item], Result],
+    items: Iterable[Item],
+    workers: int,
+    done: Callable[[int], None] | None = None,
+) -> list[Result]:
+    """Results of `function` on every item, in their order, computed by `workers` processes.
+
+    Parameters
+    ----------
+    function : callable
+        It and what it returns must be picklable.
+    items : iterable
+    workers : int
+        1 computes in this process.
+    done : callable, optional
+        Called with the number of items done.
+
+    Raises
+    ------
+    Exception
+        What `function` raised, and `BrokenExecutor` where a process was lost.
+    """
+    report = done or (lambda _count: None)
+    results: list[Result] = []
+    if workers == 1:
+        for item in items:
+            results.append(function(item))
+            report(len(results))
+        return results
+    with _one_thread_each(), _pool(workers) as pool:
+        with _anonymous_main():
+            futures = [pool.submit(function, item) for item in items]
+        for future in futures:
+            results.append(future.result())
+            report(len(results))
+    return results
 
 
 def _drain(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .checks import regime_warnings
 from .errors import InputError
-from .film.banded import SingularFilmError
+from .film.banded import NoFilmError, SingularFilmError
 from .film.following import following_stiffness
 from .film.heat import heat_totals, wall_temperatures
 from .film.linearized import linearize
@@ -110,6 +110,8 @@ def solve_case(
         solution = solve_film(case, speed, initial=initial)
         if solution.status is not SolveStatus.CONVERGED and initial is not None:
             solution = solve_film(case, speed)  # the first guess may have been a bad one
+    except NoFilmError as error:
+        return _failed(case, speed, str(error), SolveStatus.NO_EQUILIBRIUM), None
     except SingularFilmError as error:
         return _failed(case, speed, f"the film's equations cannot be solved: {error}"), None
     point = operating_point(case, speed, solution, keep_fields=keep_fields)
@@ -146,7 +148,7 @@ def operating_point(
             viscosity * speed / (2.0 * math.pi) * 2.0 * radius * case.bearing.length
             * (radius / clearance) ** 2, load,
         ),
-        "max_pressure": peak(state.solution.pressure),
+        "max_pressure": peak(state.solution.pressure, problem.mesh.half),
         "max_temperature": hottest,
         "mean_temperature": mean,
         "friction_force": friction,
@@ -156,7 +158,10 @@ def operating_point(
     }  # fmt: skip
     if status is SolveStatus.CONVERGED and isinstance(case.target, LoadTarget):
         status, message = _within_pressure(numbers["max_pressure"])
-    finite = all(math.isfinite(v) for v in numbers.values()) and np.isfinite(stiffness).all()
+    finite = (
+        all(math.isfinite(v) for k, v in numbers.items() if k != "sommerfeld_number")
+        and np.isfinite(stiffness).all()
+    )
     threshold = None
     if finite and status in _WITH_NUMBERS:
         threshold = rigid_threshold(
@@ -278,12 +283,14 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
     )
 
 
-def _failed(case: Case, speed: float, message: str) -> OperatingPoint:
+def _failed(
+    case: Case, speed: float, message: str, status: SolveStatus = SolveStatus.FAILED
+) -> OperatingPoint:
     """A point without numbers."""
     nan = math.nan
     load = case.target.load if isinstance(case.target, LoadTarget) else nan
     return OperatingPoint(
-        status=SolveStatus.FAILED,
+        status=status,
         message=message,
         thermal_model=str(case.thermal.model),
         cavitation=str(case.film.cavitation),

@@ -49,6 +49,7 @@ class Kind:
 _KINDS = (
     Kind("length", "m", "100 um", 1e-12, 1e3),
     Kind("temperature", "K", "40 degC", 1.0, 3e3),
+    Kind("temperature difference", "K", "3 K", 1e-9, 1e3),
     Kind("angle", "rad", "90 deg", 1e-12, 1e3),
     Kind("slope", "m/m", "0.1 mm/m", 1e-12, 1.0),
     Kind("speed", "rad/s", "3000 rpm", 1e-9, 1e6),
@@ -254,6 +255,8 @@ def _check_meaning(unit: pint.Unit, text: str, kind: Kind) -> None:
     """Refuse what has the right dimension and still another meaning."""
     if kind.name == "temperature" and "delta" in str(unit):
         raise _Refusal(f'"{text}" is a temperature difference, a temperature is needed')
+    if kind.name == "temperature difference" and _to_si(0.0, unit, kind) != 0.0:
+        raise _Refusal(f'"{text}" is a temperature, a difference is needed (K, delta_degC)')
     if kind.name == "slope":  # radians and ratios of lengths say the same
         return
     registry = _registry()

@@ -20,6 +20,10 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
+class NoFilmError(ArithmeticError):
+    """The journal touches the bore wherever it is asked to be."""
+
+
 class SingularFilmError(ArithmeticError):
     """The film's matrix is not positive definite (NaN, or a film closed everywhere)."""
 

@@ -99,7 +99,10 @@ def solve_pressure(
         pressure = _with_held(operator, factor.solve(source))
         if cavitation is Cavitation.HALF_SOMMERFELD:
             kept = np.where(operator.held, pressure, np.maximum(pressure, 0.0))
-            full = film & (kept > 0.0) if frozen is None else frozen
+            full = film & (kept > 0.0)
+            if frozen is not None:
+                full = frozen
+                kept = np.where(full | operator.held, pressure, 0.0)
             return PressureSolution(kept, pressure, full, factor, 1, True)
         return PressureSolution(pressure, pressure, film, factor, 1, True)
     if frozen is not None:
@@ -110,7 +113,7 @@ def solve_pressure(
         return solution
     allowed = np.empty_like(film)
     allowed[:] = film
-    _one_stretch(solution.pressure, operator.held, region, allowed)
+    _one_stretch(solution.pressure, operator.held, operator.linked[0], region, allowed)
     if (solution.full & ~allowed).any():
         again = _active_set(operator, source, allowed, solution.full & allowed)
         return replace(again, steps=solution.steps + again.steps)
@@ -231,8 +234,7 @@ def _on_frozen_set(operator: FilmOperator, source: Array, full: Flags) -> Pressu
         operator.conductance, operator.linked, source, pressure, full, full, tolerance, update
     )
     raw = _with_held(operator, pressure)
-    kept = np.maximum(raw, 0.0)
-    return PressureSolution(kept, raw, full, factor, 1, True, violations=int(violations))
+    return PressureSolution(raw, raw, full, factor, 1, True, violations=int(violations))
 
 
 @kernel
@@ -266,10 +268,11 @@ def _update_set(conductance, linked, source, pressure, full, allowed, tolerance,
 
 
 @kernel
-def _one_stretch(pressure, held, region, allowed):
+def _one_stretch(pressure, held, joined, region, allowed):
     """Forbid, on each line and in each region, full stretches other than the one with the peak.
 
-    A stretch that touches a groove under pressure is fed by it and stays.
+    A stretch that touches a groove under pressure is fed by it and stays, and so does one that
+    goes on into the next lobe.
     """
     n, m = pressure.shape
     first = 0
@@ -285,12 +288,12 @@ def _one_stretch(pressure, held, region, allowed):
             while offset + length < n and region[(first + offset + length) % n] == region[i0]:
                 length += 1
             if region[i0] >= 0:
-                _keep_peak(pressure, held, allowed, first + offset, length, j)
+                _keep_peak(pressure, held, joined, allowed, first + offset, length, j)
             offset += length
 
 
 @kernel
-def _keep_peak(pressure, held, allowed, start, length, j):
+def _keep_peak(pressure, held, joined, allowed, start, length, j):
     n = pressure.shape[0]
     peak, at = 0.0, -1
     for s in range(length):
@@ -315,6 +318,9 @@ def _keep_peak(pressure, held, allowed, start, length, j):
             fed = fed or held[(start + end) % n, j]
             end += 1
         before, behind = (start + s - 1) % n, (start + end) % n
+        first, last = s == 0, end == length
+        fed = fed or (first and joined[i, j] and pressure[before, j] > 0.0)
+        fed = fed or (last and joined[behind, j] and pressure[behind, j] > 0.0)
         fed = fed or (held[before, j] and pressure[before, j] > 0.0)
         fed = fed or (held[behind, j] and pressure[behind, j] > 0.0)
         if not fed:

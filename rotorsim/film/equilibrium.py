@@ -129,7 +129,7 @@ class AttitudeSearch:
         carried = math.atan2(-state.force[1], -state.force[0])
         direction = math.remainder(carried - self.load_angle, 2.0 * math.pi)
         rate = (state.force[0] * turn[1] - state.force[1] * turn[0]) / size**2
-        step = -direction / rate if abs(rate) > 0.1 else -direction
+        step = -direction / rate if abs(rate) > 1e-3 else -direction
         return self.at(angle + max(-0.4, min(0.4, step))), abs(direction)
 
     def allowed(self, old: Position, new: Position) -> Position:  # noqa: ARG002

@@ -183,8 +183,10 @@ def _mixed(
         np.add.at(heat, number, (arriving * temperature[open_]).sum(axis=1))
         np.add.at(taken, number, leaving.sum(axis=1))
         np.add.at(supply, number, leaving.sum(axis=1) * supplied[face][open_])
+    kept = problem.thermal.hot_oil_carry_over
+    given, heat = kept * given, kept * heat
     fresh = np.maximum(taken - given, 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         value = (heat + fresh * supply / taken) / (given + fresh)
     mixed = supplied.copy()
     for face in range(4):

@@ -56,8 +56,12 @@ def side_flow(problem: FilmProblem, state: FilmState) -> float:
     return float(problem.mesh.multiplicity * out)
 
 
-def peak(field: Array) -> float:
+def peak(field: Array, half: bool) -> float:
     """Largest value of a cell field, refined by parabolas through its neighbours."""
+    if half:
+        # symmetric about the mid-plane, half a cell before the first centre
+        middle = np.maximum(field[:, 0] + (field[:, 0] - field[:, 1]) / 8.0, field[:, 0])
+        field = np.column_stack([middle, field])
     i, j = np.unravel_index(int(np.argmax(field)), field.shape)
     value = float(field[i, j])
     if value <= 0.0:

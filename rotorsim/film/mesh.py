@@ -41,8 +41,8 @@ class FilmMesh:
     slot : (n,) bool array
         True where p = 0 and fresh film begin at the cell's first face (``max_film``).
     region : (n,) int array
-        Number of the stretch of film a column belongs to; stretches end at slots and at
-        full-length grooves.
+        Number of the stretch of film a column belongs to; stretches end at slots, at joints of
+        lobes and at full-length grooves.
     radius : float
         Journal radius [m].
     """
@@ -107,7 +107,7 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
         half=half,
         supply=supply,
         slot=slot,
-        region=_regions(supply, slot),
+        region=_regions(supply, slot | _joints(bearing, theta_faces)),
         radius=bearing.journal_radius,
     )
 
@@ -237,18 +237,30 @@ def _supply_cells(
     return supply, y_faces
 
 
-def _regions(supply: NDArray[np.int64], slot: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Stretches of film between slots and full-length grooves; -1 in such grooves."""
+def _joints(bearing: Bearing, theta_faces: Array) -> NDArray[np.bool_]:
+    """Columns at whose first face one lobe ends and the next begins."""
+    first = theta_faces[:-1]
+    joint = np.zeros(first.size, dtype=bool)
+    for arc in bearing.arcs:
+        if arc.preload > 0.0:
+            for edge in (arc.start, arc.end):
+                distance = (first - edge + math.pi) % (2.0 * math.pi) - math.pi
+                joint |= np.abs(distance) < 1e-6
+    return joint
+
+
+def _regions(supply: NDArray[np.int64], begins: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """Stretches of film between slots, joints and full-length grooves; -1 in such grooves."""
     blocked = np.asarray((supply >= 0).all(axis=1), dtype=bool)
     region = np.full(blocked.size, -1, dtype=np.int64)
     current = -1
     for i in range(blocked.size):
         if blocked[i]:
             continue
-        if i == 0 or blocked[i - 1] or slot[i]:
+        if i == 0 or blocked[i - 1] or begins[i]:
             current += 1
         region[i] = current
-    joined = not blocked[0] and not blocked[-1] and not slot[0]
+    joined = not blocked[0] and not blocked[-1] and not begins[0]
     if joined and current > 0:
         region[region == current] = region[0]
     return region

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..model import Bearing, Case, EccentricityTarget, LoadTarget
 from ..status import SolveStatus
+from .banded import NoFilmError
 from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
 from .geometry import stations, thinnest_film
 from .layers import isoviscous_layers
@@ -182,6 +183,7 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
         level = _graded_position(bearing, local)
         problem = film_problem(case, speed, bearing, level)
         search = _search(case, problem, frame)
+        local = _inside(problem, search, local)
         if problem.is_thermal and warm is None:
             warm = _cold_start(problem, local, search)
             position = _turned(warm.position, frame)
@@ -193,6 +195,19 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
         settled = settled and abs(_frame_angle(case.bearing, position) - frame) < 1e-3
         if effort.ends(film, settled, search):
             return _conclude(problem, film, frame, search, effort.iterations)
+
+
+def _inside(problem: FilmProblem, search: Search, position: Position) -> Position:
+    """A first position with film all round, nearer to the centre if need be."""
+    for share in (1.0, 0.7, 0.4, 0.0):
+        nearer = (share * position[0], share * position[1])
+        if thinnest_film(problem.stations, nearer) > 0.0:
+            return nearer
+        if isinstance(search, AttitudeSearch):
+            raise NoFilmError(
+                "the journal touches the bore at this eccentricity: lobes and tilt leave less room"
+            )
+    raise NoFilmError("the tilted journal touches the bore even when it is centred")
 
 
 def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | AttitudeSearch:
@@ -298,9 +313,10 @@ def _conclude(
     if search is not None and search.unreachable:
         status = SolveStatus.NO_EQUILIBRIUM
         message = (
-            "no journal position within the clearance carries the load "
-            f"(eccentricity ratios up to {ECCENTRICITY_LIMITS[1]}); reduce the load, or raise "
-            "speed, viscosity or size"
+            "no journal position within the clearance carries the load (eccentricity ratios from "
+            f"{ECCENTRICITY_LIMITS[0]:g} to {ECCENTRICITY_LIMITS[1]}): the film carries "
+            f"{float(np.hypot(*film.state.force)):.4g} N at the last one tried; a heavier load "
+            "needs more speed, viscosity or size, a lighter one less"
         )
     elif not film.state.solution.pressure.max() > 0.0 or not film.state.solution.full.any():
         status, message = SolveStatus.STARVED, "no film forms: the pressure is nowhere above zero"

@@ -268,7 +268,7 @@ def _through_energy(
 def _film_conductance(energy: EnergyProblem) -> float:
     """Conductance between the film's bulk and a wall, over the meshed part [W/K].
 
-    About twice k area/h, a developed film's; only the speed of convergence depends on it.
+    A few times k area/h, a developing film's; only the speed of convergence depends on it.
     """
     layers = energy.layers.pressure_share.shape[2]
-    return float(2.0 * energy.conductance.sum() / layers)
+    return float(8.0 * energy.conductance.sum() / layers)

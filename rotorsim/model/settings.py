@@ -9,6 +9,19 @@ from enum import StrEnum
 from ..errors import InputError
 
 
+def _as_choice(settings: object, section: str, **fields: type[StrEnum]) -> None:
+    """Turn plain strings into the enumerations' members, so that comparisons by identity hold."""
+    for name, kind in fields.items():
+        value = getattr(settings, name)
+        try:
+            object.__setattr__(settings, name, kind(value))
+        except ValueError:
+            allowed = ", ".join(kind)
+            raise InputError(
+                f"must be one of {allowed}", key=f"{section}.{name}", value=value
+            ) from None
+
+
 class Cavitation(StrEnum):
     """What happens where the film would pull (see docs: theory)."""
 
@@ -110,6 +123,11 @@ class FilmSettings:
     ruptured_friction: RupturedFriction = RupturedFriction.LIQUID
     viscosity_response: ViscosityResponse = ViscosityResponse.FROZEN
 
+    def __post_init__(self) -> None:
+        _as_choice(self, "film", cavitation=Cavitation, inception=Inception)
+        _as_choice(self, "film", ruptured_friction=RupturedFriction)
+        _as_choice(self, "film", viscosity_response=ViscosityResponse)
+
 
 @dataclass(frozen=True)
 class ThermalSettings:
@@ -129,6 +147,9 @@ class ThermalSettings:
         [W/(m K)], with ``bush = conduction``.
     bush_heat_transfer : float
         Convection to the surroundings outside and at both ends [W/(m2 K)].
+    hot_oil_carry_over : float
+        With ``inlet = mixing``: part of the oil arriving at a groove that enters the next film, 0
+        to 1; fresh oil replaces the rest.
     """
 
     model: ThermalModel = ThermalModel.THD
@@ -140,8 +161,15 @@ class ThermalSettings:
     shaft_temperature: float | None = None
     bush_conductivity: float = 250.0
     bush_heat_transfer: float = 80.0
+    hot_oil_carry_over: float = 1.0
 
     def __post_init__(self) -> None:
+        _as_choice(self, "thermal", model=ThermalModel, inlet=InletModel)
+        _as_choice(self, "thermal", shaft=ShaftModel, bush=BushModel)
+        if not 0.0 <= self.hot_oil_carry_over <= 1.0:
+            raise InputError(
+                "must be 0 to 1", key="thermal.hot_oil_carry_over", value=self.hot_oil_carry_over
+            )
         for name in ("ambient_temperature", "supply_temperature", "bush_conductivity"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):

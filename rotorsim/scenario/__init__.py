@@ -2,13 +2,17 @@
 
 from .scenario import Scenario, load_scenario
 from .settings import OrbitForce, OrbitSettings, RotorKind, SpeedRamp, StabilitySettings
+from .tolerances import Distribution, Spread, ToleranceSettings
 
 __all__ = [
+    "Distribution",
     "OrbitForce",
     "OrbitSettings",
     "RotorKind",
     "Scenario",
     "SpeedRamp",
+    "Spread",
     "StabilitySettings",
+    "ToleranceSettings",
     "load_scenario",
 ]

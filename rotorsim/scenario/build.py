@@ -45,6 +45,7 @@ from .schema import (
     ThermalTable,
 )
 from .settings import StabilitySettings
+from .tolerances import KINDS, ToleranceSettings
 
 SENSIBLE_VISCOSITY = (1e-7, 1e5)
 """Of the oil at the temperatures given [Pa s]."""
@@ -138,6 +139,7 @@ def thermal_settings(tables: ScenarioTables, oil: Lubricant) -> ThermalSettings:
         inlet=table.inlet,
         shaft=shaft,
         bush=table.bush,
+        hot_oil_carry_over=table.hot_oil_carry_over,
         shaft_temperature=shaft_temperature,
         **given,
     )
@@ -254,3 +256,23 @@ def stability_settings(tables: ScenarioTables) -> StabilitySettings | None:
     if tables.stability is None:
         return None
     return StabilitySettings(tuple(map(float, ascending(tables.stability.mass, "stability.mass"))))
+
+
+def tolerance_settings(tables: ScenarioTables) -> ToleranceSettings | None:
+    """Spreads of the inputs; at least one."""
+    table = tables.tolerances
+    if table is None:
+        return None
+    spreads = {name: spread for name in KINDS if (spread := getattr(table, name)) is not None}
+    if not spreads:
+        raise InputError(
+            f"needs one input or more ({', '.join(KINDS)}); write for example "
+            'radial_clearance = "5 um"',
+            key="tolerances",
+        )
+    if "load" in spreads and tables.operating.load is None:
+        raise InputError(
+            "goes with operating.load; with an eccentricity ratio the load is a result",
+            key="tolerances.load",
+        )
+    return ToleranceSettings(spreads, table.distribution, table.samples, table.seed)

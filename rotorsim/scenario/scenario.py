@@ -31,6 +31,7 @@ from .oil import lubricant
 from .orbit import orbit_settings
 from .schema import ScenarioTables
 from .settings import OrbitSettings, StabilitySettings
+from .tolerances import ToleranceSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,7 @@ class Scenario:
     rotor : RigidRotor or None
     orbit : OrbitSettings or None
     stability : StabilitySettings or None
+    tolerances : ToleranceSettings or None
     """
 
     title: str
@@ -81,6 +83,7 @@ class Scenario:
     rotor: RigidRotor | None = None
     orbit: OrbitSettings | None = None
     stability: StabilitySettings | None = None
+    tolerances: ToleranceSettings | None = None
 
     @classmethod
     def from_text(cls, text: str, source: str | Path | None = None) -> Scenario:
@@ -227,4 +230,5 @@ def _parts(tables: ScenarioTables, text: str, path: Path | None) -> dict[str, An
         "rotor": build.rotor(tables),
         "orbit": orbit_settings(tables, clearances, speeds),
         "stability": build.stability_settings(tables),
+        "tolerances": build.tolerance_settings(tables),
     }

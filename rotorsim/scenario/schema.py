@@ -33,6 +33,7 @@ from .fields import (
     written_as,
 )
 from .settings import BearingProfile, OrbitForce, RotorKind
+from .tolerances import DEFAULT_SAMPLES, Distribution, Spread, spread_of
 
 Length = Annotated[float, quantity("length", "50 mm")]
 Clearance = Annotated[float, quantity("length", "100 um")]
@@ -145,6 +146,7 @@ class ThermalTable(Table):
     bush: Annotated[BushModel, choice(BushModel)] = BushModel.AMBIENT
     ambient_temperature: Temperature | None = None
     supply_temperature: Temperature | None = None
+    hot_oil_carry_over: float = Field(default=1.0, ge=0.0, le=1.0, examples=[0.8])
     bush_conductivity: Annotated[float, quantity("thermal conductivity")] | None = None
     bush_heat_transfer: (
         Annotated[float, quantity("heat transfer coefficient", None, "not_negative")] | None
@@ -224,6 +226,18 @@ class StabilityTable(Table):
     ] = Field(examples=["1200 kg"])
 
 
+class TolerancesTable(Table):
+    """``[tolerances]``: about the nominal values."""
+
+    radial_clearance: Annotated[Spread, spread_of("radial_clearance")] | None = None
+    viscosity: Annotated[Spread, spread_of("viscosity")] | None = None
+    load: Annotated[Spread, spread_of("load")] | None = None
+    supply_temperature: Annotated[Spread, spread_of("supply_temperature")] | None = None
+    distribution: Annotated[Distribution, choice(Distribution)] = Distribution.UNIFORM
+    samples: int = Field(default=DEFAULT_SAMPLES, ge=8, le=MAX_COUNT)
+    seed: int = Field(default=0, ge=0, le=2**31)
+
+
 class ScenarioTables(Table):
     """The whole file."""
 
@@ -236,3 +250,4 @@ class ScenarioTables(Table):
     rotor: RotorTable | None = None
     orbit: OrbitTable | None = None
     stability: StabilityTable | None = None
+    tolerances: TolerancesTable | None = None

@@ -19,10 +19,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..atomic import replacing
 from ..errors import TableError
 from ..status import SolveStatus
 from .assembly import build
-from .variables import COEFFICIENTS, DIMENSIONS
+from .variables import COEFFICIENTS, CONVENTIONS, DIMENSIONS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -205,7 +206,11 @@ def write(dataset: xr.Dataset, path: str | Path) -> Path:
     header += ["speed [rad/s]", "status"]
     header += [f"{n} [{'N' if n == 'load' else 'N/m' if n[0] == 'k' else 'N s/m'}]" for n in names]
     try:
-        with target.open("w", newline="", encoding="utf-8") as file:
+        with (
+            replacing(target) as temporary,
+            temporary.open("w", newline="", encoding="utf-8") as file,
+        ):
+            file.writelines(f"# {line}\n" for line in CONVENTIONS)
             writer = csv.writer(file, lineterminator="\n")
             writer.writerow(header)
             for index in np.ndindex(single["kxx"].shape):

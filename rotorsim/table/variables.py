@@ -9,6 +9,17 @@ COEFFICIENTS = ("kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")
 
 DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
 
+SIGNS = (
+    "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",
+    "first index: direction of the force, second: direction of the displacement or velocity.",
+)
+CONVENTIONS = (
+    "Frame: x along the static load on the journal, y 90 degrees ahead of x in the direction of",
+    "the shaft's rotation.",
+    *SIGNS,
+)
+"""Lines that every file in the load frame carries."""
+
 ATTRIBUTES: dict[str, tuple[str, str]] = {
     "thermal_model": ("1", "thermal model of the film"),
     "radial_clearance": ("m", "radial clearance"),
