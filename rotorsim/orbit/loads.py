@@ -1,4 +1,4 @@
-"""What acts on the rotor besides film and unbalance, each given in the load frame."""
+"""Loads on the rotor as the compiled right-hand side takes them, and feedback control."""
 
 from __future__ import annotations
 
@@ -10,70 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
 from .rotor import RotorModel
 
 Array = NDArray[np.float64]
 
 CONSTANT, HARMONIC, HALF_SINE = 0.0, 1.0, 2.0
 """Time functions the compiled right-hand side knows."""
-
-
-@dataclass(frozen=True)
-class StepForce:
-    """A force (fx, fy) [N] on a station from `start` until `stop` [s]."""
-
-    force: tuple[float, float]
-    start: float = 0.0
-    stop: float = math.inf
-    station: int = 0
-
-
-@dataclass(frozen=True)
-class HarmonicForce:
-    """A force fx cos(W t + px), fy cos(W t + py): forces [N], frequency W [rad/s], phases [rad]."""
-
-    force: tuple[float, float]
-    frequency: float
-    phase: tuple[float, float] = (0.0, 0.0)
-    start: float = 0.0
-    stop: float = math.inf
-    station: int = 0
-
-
-@dataclass(frozen=True)
-class BaseMotion:
-    """Harmonic motion of the bearing housing: displacement ax cos(W t + px), ay cos(W t + py).
-
-    The orbit's coordinates stay those of the journal in its bearing; the rotor is loaded with
-    minus its mass times the base's acceleration.
-
-    Parameters
-    ----------
-    displacement : tuple of float
-        Amplitudes [m].
-    frequency : float
-        [rad/s]
-    phase : tuple of float
-        [rad]
-    """
-
-    displacement: tuple[float, float]
-    frequency: float
-    phase: tuple[float, float] = (0.0, 0.0)
-    start: float = 0.0
-    stop: float = math.inf
-
-
-@dataclass(frozen=True)
-class BaseShock:
-    """One half-sine pulse of base acceleration (ax, ay) [m/s2], `duration` long [s]."""
-
-    acceleration: tuple[float, float]
-    duration: float
-    start: float = 0.0
-
-
-Load = StepForce | HarmonicForce | BaseMotion | BaseShock
 
 
 @dataclass(frozen=True)
@@ -157,3 +100,14 @@ def _check_station(station: int, rotor: RotorModel) -> None:
 def _cosine_and_sine(amplitude: tuple[float, float], phase: tuple[float, float]) -> Array:
     a, p = np.asarray(amplitude), np.asarray(phase)
     return np.stack([a * np.cos(p), -a * np.sin(p)])
+
+
+__all__ = [
+    "BaseMotion",
+    "BaseShock",
+    "Controller",
+    "HarmonicForce",
+    "Load",
+    "StepForce",
+    "pack_loads",
+]

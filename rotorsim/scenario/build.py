@@ -25,7 +25,7 @@ from ..model import (
     ThermalModel,
     ThermalSettings,
 )
-from ..model.rotor import RigidRotor
+from ..model.rotor import JeffcottRotor, RigidRotor, Rotor
 from .geometry import (
     bearing_arcs,
     bearing_grooves,
@@ -44,11 +44,20 @@ from .schema import (
     SpeedRangeTable,
     ThermalTable,
 )
-from .settings import StabilitySettings
+from .settings import RotorKind, StabilitySettings
 from .tolerances import KINDS, ToleranceSettings
 
 SENSIBLE_VISCOSITY = (1e-7, 1e5)
 """Of the oil at the temperatures given [Pa s]."""
+_ROTOR_KEYS = {
+    RotorKind.RIGID: {"mass": "1200 kg"},
+    RotorKind.JEFFCOTT: {
+        "disc_mass": "600 kg",
+        "journal_mass": "60 kg",
+        "shaft_stiffness": "100 MN/m",
+    },
+}
+_OPTIONAL_ROTOR_KEYS = {RotorKind.RIGID: (), RotorKind.JEFFCOTT: ("disc_damping",)}
 MAX_CELLS = 20_000_000
 """Cells of the largest film or bush that is accepted."""
 
@@ -244,11 +253,30 @@ def ascending(
     return np.linspace(entry.start, entry.stop, entry.count)
 
 
-def rotor(tables: ScenarioTables) -> RigidRotor | None:
-    """Rotor, by its kind."""
-    if tables.rotor is None:
+def rotor(tables: ScenarioTables) -> Rotor | None:
+    """Rotor, by its kind; each kind has keys of its own."""
+    table = tables.rotor
+    if table is None:
         return None
-    return RigidRotor(mass=tables.rotor.mass, unbalance=tables.rotor.unbalance)
+    given = {
+        name: value
+        for name, value in table.model_dump(exclude={"kind", "unbalance"}).items()
+        if value is not None
+    }
+    needed = _ROTOR_KEYS[table.kind]
+    for name, example in needed.items():
+        if name not in given:
+            raise InputError(
+                f'is missing; write for example {name} = "{example}"', key=f"rotor.{name}"
+            )
+    for name in given:
+        if name not in needed and name not in _OPTIONAL_ROTOR_KEYS[table.kind]:
+            raise InputError(
+                f'does not go with kind = "{table.kind.value}" (its keys: {", ".join(needed)})',
+                key=f"rotor.{name}",
+            )
+    made = JeffcottRotor if table.kind is RotorKind.JEFFCOTT else RigidRotor
+    return made(**given, unbalance=table.unbalance)
 
 
 def stability_settings(tables: ScenarioTables) -> StabilitySettings | None:

@@ -16,6 +16,7 @@ MAX_OTHERS = 10
 MAX_VALUE = 120
 _WHERE_OUTERMOST = "the file's top level"
 _BY_TYPE = {
+    "bool_type": "must be true or false, without quotes",
     "float_type": "must be a plain number, without quotes or unit",
     "int_type": "must be a whole number, without quotes",
     "int_from_float": "must be a whole number",

@@ -23,7 +23,7 @@ from ..model import (
     ThermalModel,
     ThermalSettings,
 )
-from ..model.rotor import RigidRotor
+from ..model.rotor import Rotor
 from . import build
 from .document import parse_toml, read_text
 from .messages import as_written, dotted, location, scenario_error, shown
@@ -61,7 +61,7 @@ class Scenario:
     speeds : (n,) array
         Ascending [rad/s], read-only.
     target : EccentricityTarget or LoadTarget
-    rotor : RigidRotor or None
+    rotor : RigidRotor, JeffcottRotor or None
     orbit : OrbitSettings or None
     stability : StabilitySettings or None
     tolerances : ToleranceSettings or None
@@ -80,7 +80,7 @@ class Scenario:
     thermal_models: tuple[ThermalModel, ...]
     speeds: NDArray[np.float64]
     target: Target
-    rotor: RigidRotor | None = None
+    rotor: Rotor | None = None
     orbit: OrbitSettings | None = None
     stability: StabilitySettings | None = None
     tolerances: ToleranceSettings | None = None

@@ -32,7 +32,7 @@ from .fields import (
     range_or_list,
     written_as,
 )
-from .settings import BearingProfile, OrbitForce, RotorKind
+from .settings import BearingProfile, OrbitForce, OrbitKind, RotorKind, Station
 from .tolerances import DEFAULT_SAMPLES, Distribution, Spread, spread_of
 
 Length = Annotated[float, quantity("length", "50 mm")]
@@ -42,6 +42,14 @@ Temperature = Annotated[float, quantity("temperature", "40 degC")]
 Speed = Annotated[float, quantity("speed", "3000 rpm")]
 ViscosityPoint = Annotated[tuple[Temperature, Annotated[Viscosity, dynamic_or_kinematic]], as_tuple]
 Mass = Annotated[float, quantity("mass", "1200 kg")]
+Duration = Annotated[float, quantity("time", "0.2 s")]
+Instant = Annotated[float, quantity("time", "0.1 s", "not_negative")]
+Forces = Annotated[
+    list[Annotated[float, quantity("force", "500 N", "any")]], Field(min_length=2, max_length=2)
+]
+Phases = Annotated[
+    list[Annotated[float, quantity("angle", "90 deg", "any")]], Field(min_length=2, max_length=2)
+]
 MAX_COUNT = 100_000
 
 
@@ -170,11 +178,12 @@ class MassRangeTable(Table):
 
 
 class SpeedRampTable(Table):
-    """``{ start, stop, duration }`` of an orbit."""
+    """``{ start, stop, duration, hold }`` of an orbit."""
 
     start: Speed = Field(examples=["3000 rpm"])
     stop: Speed = Field(examples=["15000 rpm"])
     duration: Annotated[float, quantity("time", "2 s")] = Field(examples=["2 s"])
+    hold: Annotated[float, quantity("time", "0.5 s", "not_negative")] = 0.0
 
 
 class OperatingTable(Table):
@@ -191,16 +200,65 @@ class OperatingTable(Table):
 
 
 class RotorTable(Table):
-    """``[rotor]``; a further kind gets a table of its own, told apart by ``kind``."""
+    """``[rotor]``; which keys go with which kind: `build.rotor`."""
 
     kind: Annotated[RotorKind, choice(RotorKind)] = RotorKind.RIGID
-    mass: Mass = Field(examples=["1200 kg"])
+    mass: Mass | None = None
+    disc_mass: Mass | None = None
+    journal_mass: Mass | None = None
+    shaft_stiffness: Annotated[float, quantity("stiffness", "10 MN/m")] | None = None
+    disc_damping: Annotated[float, quantity("damping", "200 N*s/m", "not_negative")] | None = None
     unbalance: Annotated[float, quantity("unbalance", "500 g*mm", "not_negative")] = 0.0
+
+
+class LoadTable(Table):
+    """When a load acts, and on which station."""
+
+    start: Instant = 0.0
+    stop: Duration | None = None
+    on: Annotated[Station, choice(Station)] = Station.JOURNAL
+
+
+class StepTable(LoadTable):
+    """``[orbit.step]``."""
+
+    force: Forces = Field(examples=[["500 N", "0 N"]])
+
+
+class HarmonicTable(LoadTable):
+    """``[orbit.harmonic]``."""
+
+    force: Forces = Field(examples=[["500 N", "0 N"]])
+    frequency: Annotated[float, quantity("speed", "50 Hz")] = Field(examples=["50 Hz"])
+    phase: Phases = [0.0, 0.0]
+
+
+class BaseMotionTable(Table):
+    """``[orbit.base_motion]``."""
+
+    displacement: list[Annotated[float, quantity("length", "10 um", "any")]] = Field(
+        min_length=2, max_length=2, examples=[["10 um", "0 um"]]
+    )
+    frequency: Annotated[float, quantity("speed", "50 Hz")] = Field(examples=["50 Hz"])
+    phase: Phases = [0.0, 0.0]
+    start: Instant = 0.0
+    stop: Duration | None = None
+
+
+class BaseShockTable(Table):
+    """``[orbit.base_shock]``."""
+
+    acceleration: list[Annotated[float, quantity("acceleration", "10 m/s^2", "any")]] = Field(
+        min_length=2, max_length=2, examples=[["10 m/s^2", "0 m/s^2"]]
+    )
+    duration: Duration = Field(examples=["11 ms"])
+    start: Instant = 0.0
 
 
 class OrbitTable(Table):
     """``[orbit]``."""
 
+    kind: Annotated[OrbitKind, choice(OrbitKind)] | None = None
     force: Annotated[OrbitForce, choice(OrbitForce)] = OrbitForce.LINEAR
     speed: Annotated[
         Annotated[SpeedRampTable, Tag(AS_TABLE)] | Annotated[Speed, Tag(AS_LIST)],
@@ -214,6 +272,14 @@ class OrbitTable(Table):
         default=[0.0, 0.0], min_length=2, max_length=2
     )
     radial_clearance: Clearance | None = None
+    static_load: bool = True
+    unbalance: bool | None = None
+    step: StepTable | None = None
+    harmonic: HarmonicTable | None = None
+    base_motion: BaseMotionTable | None = None
+    base_shock: BaseShockTable | None = None
+    samples_per_revolution: int = Field(default=64, ge=16, le=4096)
+    steady_only: bool = False
 
 
 class StabilityTable(Table):

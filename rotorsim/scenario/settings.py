@@ -5,11 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from ..model.loads import Load
+
 
 class RotorKind(StrEnum):
     """Kinds of rotor that a scenario can describe."""
 
     RIGID = "rigid"
+    JEFFCOTT = "jeffcott"
 
 
 class OrbitForce(StrEnum):
@@ -19,6 +22,26 @@ class OrbitForce(StrEnum):
     """K and C from the coefficient table."""
     FILM = "film"
     """Nonlinear film force."""
+
+
+class OrbitKind(StrEnum):
+    """What an orbit is about."""
+
+    FREE_DECAY = "free_decay"
+    """Displaced and let go: no unbalance."""
+    UNBALANCE = "unbalance"
+    STEP = "step"
+    HARMONIC = "harmonic"
+    RUN_UP = "run_up"
+    COAST_DOWN = "coast_down"
+    BASE_MOTION = "base_motion"
+
+
+class Station(StrEnum):
+    """Where a load acts on the rotor."""
+
+    JOURNAL = "journal"
+    DISC = "disc"
 
 
 class BearingProfile(StrEnum):
@@ -39,11 +62,14 @@ class SpeedRamp:
         [rad/s]
     duration : float
         [s]
+    hold : float
+        At the last speed after that [s].
     """
 
     start: float
     stop: float
     duration: float
+    hold: float = 0.0
 
     @property
     def acceleration(self) -> float:
@@ -68,6 +94,14 @@ class OrbitSettings:
         From the static equilibrium, load frame [m].
     initial_velocity : tuple of float
         [m/s]
+    kind : OrbitKind
+    static_load, unbalance : bool
+        Whether they act.
+    loads : tuple of Load
+        Steps, harmonic forces, motion of the base.
+    samples_per_revolution : int
+    steady_only : bool
+        Figures leave the transient out.
     """
 
     radial_clearance: float
@@ -76,6 +110,12 @@ class OrbitSettings:
     force: OrbitForce = OrbitForce.LINEAR
     initial_displacement: tuple[float, float] = (0.0, 0.0)
     initial_velocity: tuple[float, float] = (0.0, 0.0)
+    kind: OrbitKind = OrbitKind.FREE_DECAY
+    static_load: bool = True
+    unbalance: bool = True
+    loads: tuple[Load, ...] = ()
+    samples_per_revolution: int = 64
+    steady_only: bool = False
 
 
 @dataclass(frozen=True)
