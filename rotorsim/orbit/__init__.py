@@ -4,6 +4,7 @@ Everything is SI and in the load frame. `simulate(OrbitProblem(...))` gives an `
 `simulate_linear` is the short way with given stiffness and damping.
 """
 
+from .analysis import OrbitAnalysis, WhirlRange, analyse, initial_growth, whirl_range
 from .clearance import minimum_film
 from .equilibrium import find_equilibrium, linearize_force
 from .film_force import LoadedFilm, SolvedFilmForce, can_be_mapped, loaded_film
@@ -53,6 +54,7 @@ __all__ = [
     "Method",
     "Modes",
     "Orbit",
+    "OrbitAnalysis",
     "OrbitEvent",
     "OrbitProblem",
     "OrbitStatus",
@@ -63,6 +65,8 @@ __all__ = [
     "Spectrum",
     "SpeedSchedule",
     "StepForce",
+    "WhirlRange",
+    "analyse",
     "cache_folder",
     "can_be_mapped",
     "cascade",
@@ -72,6 +76,7 @@ __all__ = [
     "find_equilibrium",
     "fit_modes",
     "growth_rate",
+    "initial_growth",
     "jeffcott_rotor",
     "linearize_force",
     "loaded_film",
@@ -86,4 +91,5 @@ __all__ = [
     "spectrum",
     "steady_part",
     "whirl_frequency_ratio",
+    "whirl_range",
 ]

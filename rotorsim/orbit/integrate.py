@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -49,8 +50,22 @@ class _Run:
     touch: Callable[[float, Array], float]
 
 
-def simulate(problem: OrbitProblem) -> Orbit:
+def simulate(
+    problem: OrbitProblem,
+    *,
+    consume: Callable[[Orbit], None] | None = None,
+    keep_revolutions: int | None = None,
+) -> Orbit:
     """Integrate one orbit to its end, touch-down or failure.
+
+    Parameters
+    ----------
+    problem : OrbitProblem
+    consume : callable, optional
+        Called with each piece as soon as it is there: to show it, or to write it out.
+    keep_revolutions : int, optional
+        Keep the last so many revolutions only (to the next whole piece), so that memory does not
+        grow with the run; the smallest film before them stays as an event ``minimum_film``.
 
     Returns
     -------
@@ -63,11 +78,44 @@ def simulate(problem: OrbitProblem) -> Orbit:
         Start outside the clearance, speeds outside the coefficients' range, or a static load that
         no position carries.
     """
-    orbit = concatenate(simulate_pieces(problem))
+    pieces: deque[Orbit] = deque()
+    dropped: OrbitEvent | None = None
+    least = math.inf
+    for piece in simulate_pieces(problem):
+        if consume is not None:
+            consume(piece)
+        pieces.append(piece)
+        if keep_revolutions is None:
+            continue
+        while len(pieces) > 1 and _turns(pieces) - _turns([pieces[0]]) >= keep_revolutions:
+            old = pieces.popleft()
+            if old.t.size and old.min_film.min() < least:
+                at = int(np.argmin(old.min_film))
+                least = float(old.min_film[at])
+                dropped = OrbitEvent(
+                    "minimum_film", float(old.t[at]), float(old.x[at]), float(old.y[at])
+                )
+    orbit = concatenate(pieces)
+    if dropped is not None:
+        orbit = replace(orbit, events=(dropped, *orbit.events))
     if orbit.status is not OrbitStatus.COMPLETED or not problem.schedule.is_constant:
-        return orbit
+        return replace(orbit, message="; ".join(filter(None, (orbit.message, orbit.note))))
     found = recognise(orbit)
-    return replace(orbit, status=found.status, message=found.message)
+    message = "; ".join(filter(None, (found.message, orbit.note)))
+    events = orbit.events
+    if found.steady_from is not None:
+        at = min(found.steady_from, orbit.t.size - 1)
+        events += (
+            OrbitEvent(
+                found.status.value, float(orbit.t[at]), float(orbit.x[at]), float(orbit.y[at])
+            ),
+        )
+    return replace(orbit, status=found.status, message=message, events=events)
+
+
+def _turns(pieces: Iterable[Orbit]) -> float:
+    """Revolutions that the pieces hold together."""
+    return sum(p.t.size / p.samples_per_revolution for p in pieces)
 
 
 def simulate_pieces(

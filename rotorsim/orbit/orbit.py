@@ -35,7 +35,11 @@ class OrbitStatus(StrEnum):
 
 @dataclass(frozen=True)
 class OrbitEvent:
-    """Something that happened: name, time [s], journal position [m]."""
+    """Something that happened: name, time [s], journal position [m].
+
+    ``touch_down``; ``settled``, ``periodic``, ``limit_cycle`` or ``quasi_periodic`` where the
+    steady part begins; ``minimum_film`` of what a long run did not keep.
+    """
 
     name: str
     time: float

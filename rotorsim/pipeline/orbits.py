@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,11 +12,14 @@ from ..errors import InputError
 from ..scenario.settings import OrbitForce, SpeedRamp
 
 if TYPE_CHECKING:
-    from ..model.rotor import RigidRotor
-    from ..orbit import Orbit, OrbitProblem, SpeedSchedule
+    from ..model import Bearing
+    from ..model.rotor import Rotor
+    from ..orbit import LinearForce, LoadedFilm, Orbit, OrbitProblem, RotorModel, SpeedSchedule
     from ..scenario import OrbitSettings, Scenario
     from ..table import CoefficientTable
 
+MAX_SAMPLES = 2_000_000
+"""Of one orbit that are kept in memory: some 200 MB."""
 RUN_UP_SECONDS = 1.0
 """Of the run-up that is added to an orbit at one speed."""
 HOLD_SECONDS = 0.3
@@ -25,7 +29,12 @@ RUN_UP_REVOLUTIONS = 60
 
 
 def simulate_orbit(
-    scenario: Scenario, table: CoefficientTable | None = None, *, thermal_model: str | None = None
+    scenario: Scenario,
+    table: CoefficientTable | None = None,
+    *,
+    thermal_model: str | None = None,
+    schedule: SpeedSchedule | None = None,
+    consume: Callable[[Orbit], None] | None = None,
 ) -> Orbit:
     """Integrate the scenario's orbit.
 
@@ -35,14 +44,19 @@ def simulate_orbit(
         With ``[orbit]`` and ``[rotor]``.
     table : CoefficientTable, optional
         Of this scenario, or any other that covers its clearance and speeds. Default: it is
-        computed.
+        computed. A nonlinear film (``force = "film"``) needs none.
     thermal_model : str, optional
-        Default: ``thd`` where the table has it.
+        Default: ``thd`` where the scenario (or the table) has it.
+    schedule : SpeedSchedule, optional
+        In place of the scenario's speed.
+    consume : callable, optional
+        Called with each piece of some revolutions as soon as it is there.
 
     Returns
     -------
     Orbit
-        How the run ended is its ``status``.
+        How the run ended is its ``status``. Of a run of more than `MAX_SAMPLES` samples the last
+        ones are kept.
 
     Raises
     ------
@@ -51,50 +65,104 @@ def simulate_orbit(
     """
     from ..orbit import simulate
 
-    if table is None:
+    settings, _ = orbit_settings(scenario)
+    if table is None and settings.force is OrbitForce.LINEAR:
         from ..sweep import tabulate
 
         table = tabulate(scenario)
-    return simulate(orbit_problem(scenario, table, thermal_model=thermal_model))
+    problem = orbit_problem(scenario, table, thermal_model=thermal_model, schedule=schedule)
+    keep = MAX_SAMPLES // problem.samples_per_revolution
+    return simulate(problem, consume=consume, keep_revolutions=keep)
 
 
 def orbit_problem(
     scenario: Scenario,
-    table: CoefficientTable,
+    table: CoefficientTable | None = None,
     *,
     thermal_model: str | None = None,
     schedule: SpeedSchedule | None = None,
 ) -> OrbitProblem:
-    """Put the scenario's orbit together; `schedule` replaces its speed (see `simulate_orbit`)."""
-    from ..orbit import LinearForce, OrbitProblem, rigid_rotor
+    """Put the scenario's orbit together (see `simulate_orbit`; linear force: with a table)."""
+    from ..orbit import OrbitProblem
 
     settings, rotor = orbit_settings(scenario)
-    if settings.force is not OrbitForce.LINEAR:
-        raise InputError(
-            'only "linear" can be simulated from a table',
-            source=scenario.source,
-            key="orbit.force",
-            value=settings.force.value,
-        )
-    model = thermal_model or preferred_model(table)
-    one = table.select(thermal_model=model, radial_clearance=settings.radial_clearance)
-    force = LinearForce(
-        coefficients=one.interpolator(),
-        radial_clearance=settings.radial_clearance,
-        equilibrium=static_position(one),
-    )
+    schedule = schedule or scenario_schedule(settings)
+    if settings.force is OrbitForce.LINEAR:
+        if table is None:
+            raise InputError(
+                'needs a coefficient table: force is "linear"', source=scenario.source, key="orbit"
+            )
+        model = thermal_model or preferred_model(table)
+        force, bearing = linear_force(scenario, table, model)
+        load, note = 0.0, ""
+    else:
+        model = thermal_model or preferred_scenario_model(scenario)
+        film = nonlinear_film(scenario, model, max(schedule.speeds))
+        force, bearing, load, note = film.force, film.bearing, film.load, film.note
     return OrbitProblem(
         force=force,
-        rotor=rigid_rotor(rotor.mass, rotor.unbalance),
-        schedule=schedule or scenario_schedule(settings),
+        rotor=rotor_model(rotor, unbalance=settings.unbalance),
+        schedule=schedule,
+        static_load=(load if settings.static_load else 0.0, 0.0),
         initial_displacement=settings.initial_displacement,
         initial_velocity=settings.initial_velocity,
+        loads=settings.loads,
         minimum_film=scenario.bearing.roughness,
+        samples_per_revolution=settings.samples_per_revolution,
         thermal_model=model,
+        bearing=bearing,
+        kind=settings.kind.value,
+        note=note,
     )
 
 
-def orbit_settings(scenario: Scenario) -> tuple[OrbitSettings, RigidRotor]:
+def linear_force(
+    scenario: Scenario, table: CoefficientTable, model: str
+) -> tuple[LinearForce, Bearing]:
+    """Stiffness and damping of the table, about its static positions."""
+    from ..orbit import LinearForce
+
+    clearance = orbit_settings(scenario)[0].radial_clearance
+    one = table.select(thermal_model=model, radial_clearance=clearance)
+    force = LinearForce(
+        coefficients=one.interpolator(),
+        radial_clearance=clearance,
+        equilibrium=static_position(one),
+    )
+    bearing = replace(scenario.bearing, radial_clearance=clearance)
+    return force, bearing.turned(-scenario.load_direction)
+
+
+def nonlinear_film(scenario: Scenario, model: str, speed: float) -> LoadedFilm:
+    """Nonlinear film of the orbit's bearing, its operating point at `speed` [rad/s].
+
+    With an eccentricity ratio in place of a load, the load is that which gives it at this speed.
+    """
+    from ..orbit import loaded_film
+
+    case = scenario.case(orbit_settings(scenario)[0].radial_clearance, model)
+    try:
+        return loaded_film(case, speed)
+    except InputError as error:
+        raise InputError(
+            error.message, source=scenario.source, key=error.key, value=error.value
+        ) from None
+
+
+def rotor_model(rotor: Rotor, *, unbalance: bool = True) -> RotorModel:
+    """Matrices of the scenario's rotor, with or without its unbalance."""
+    from ..model.rotor import RigidRotor
+    from ..orbit import jeffcott_rotor, rigid_rotor
+
+    moment = rotor.unbalance if unbalance else 0.0
+    if isinstance(rotor, RigidRotor):
+        return rigid_rotor(rotor.mass, moment)
+    return jeffcott_rotor(
+        rotor.disc_mass, rotor.journal_mass, rotor.shaft_stiffness, rotor.disc_damping, moment
+    )
+
+
+def orbit_settings(scenario: Scenario) -> tuple[OrbitSettings, Rotor]:
     """What to simulate, or an `InputError` that says what the scenario lacks."""
     if scenario.orbit is None or scenario.rotor is None:
         missing = "orbit" if scenario.orbit is None else "rotor"
@@ -112,7 +180,7 @@ def scenario_schedule(settings: OrbitSettings) -> SpeedSchedule:
 
     if isinstance(settings.speed, SpeedRamp):
         ramp = settings.speed
-        return SpeedSchedule.ramp(ramp.start, ramp.stop, ramp.duration)
+        return SpeedSchedule.ramp(ramp.start, ramp.stop, ramp.duration, ramp.hold)
     return SpeedSchedule.constant(settings.speed, settings.revolutions or RUN_UP_REVOLUTIONS)
 
 
@@ -126,6 +194,12 @@ def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> Spee
     if settings.speed <= lowest:
         return scenario_schedule(settings)
     return SpeedSchedule.ramp(lowest, settings.speed, RUN_UP_SECONDS, HOLD_SECONDS)
+
+
+def preferred_scenario_model(scenario: Scenario) -> str:
+    """``thd`` where the scenario has it, or its first thermal model."""
+    models = [model.value for model in scenario.thermal_models]
+    return "thd" if "thd" in models else models[0]
 
 
 def preferred_model(table: CoefficientTable) -> str:
