@@ -9,6 +9,8 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
+from ..shipped import shipped_scenarios
+from .options import TableArgument
 from .output import DONE, Output
 
 
@@ -21,17 +23,31 @@ class Profile(StrEnum):
 
 
 class ExportFormat(StrEnum):
-    """Formats that `export` can write."""
+    """Formats that `export` can write; `rotorsim.interchange.FORMATS` says how."""
 
+    ROSS = "ross"
     CSV = "csv"
+    MAT = "mat"
+    TXT = "txt"
+    NC = "nc"
+
+
+def export_formats(text: str) -> list[ExportFormat]:
+    """Formats from words between commas, each once."""
+    words = [word.strip().lower() for word in text.split(",")]
+    known = ", ".join(ExportFormat)
+    if not all(word in set(ExportFormat) for word in words):
+        raise InputError(f"must be some of {known}, with commas between", key="--to", value=text)
+    return [ExportFormat(word) for word in dict.fromkeys(words)]
 
 
 def new(
     output: Output,
     name: Annotated[str, typer.Argument(help="Name of the scenario file.", show_default=False)],
-    profile: Annotated[Profile, typer.Option("--profile", "-p", help="Shape of the bore.")] = (
-        Profile.PLAIN
-    ),
+    profile: Annotated[
+        Profile | None,
+        typer.Option("--profile", "-p", help="Shape of the bore.", show_default="plain"),
+    ] = None,
     load: Annotated[
         str | None,
         typer.Option("--load", help='Static load, e.g. "10 kN".', show_default="10 kN"),
@@ -40,7 +56,16 @@ def new(
         float | None,
         typer.Option("--eccentricity", help="Eccentricity ratio, instead of a load."),
     ] = None,
-    iso_vg: Annotated[float, typer.Option("--iso-vg", help="Oil: ISO VG grade.")] = 32,
+    iso_vg: Annotated[
+        float | None,
+        typer.Option("--iso-vg", metavar="GRADE", help="Oil: ISO VG grade.", show_default="32"),
+    ] = None,
+    example: Annotated[
+        str | None,
+        typer.Option(
+            "--example", metavar="NAME", help="Start from a shipped scenario instead, e.g. dal."
+        ),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> int:
     """Write a commented scenario to start from.
@@ -49,31 +74,56 @@ def new(
     """
     from ..atomic import write_text
     from ..scenario import Scenario
-    from .template import scenario_text
 
-    if load is not None and eccentricity is not None:
-        raise InputError("give a load or an eccentricity ratio, not both", key="--load")
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if path.exists() and not force:
         raise InputError("exists; choose another name, or replace it with --force", source=path)
-    target = ("load", load or "10 kN") if eccentricity is None else ("eccentricity", eccentricity)
-    text = scenario_text(path.stem, profile.value, target, iso_vg)
+    if example is None:
+        text = _new_text(path.stem, profile or Profile.PLAIN, load, eccentricity, iso_vg or 32.0)
+    elif (profile, load, eccentricity, iso_vg) == (None, None, None, None):
+        text = _shipped_text(example)
+    else:
+        raise InputError("has its own bore, load and oil: give no further choice", key="--example")
     loaded = Scenario.from_text(text, source=path)
     write_text(path, text)
     output.document({"scenario": path, "title": loaded.title})
     output.show(
-        f"{path} is written. Put your numbers in, then:",
-        f"  rotorsim check {path}",
+        f"{path} is written. Put your numbers in, then:\n"
+        f"  rotorsim check {path}\n"
         f"  rotorsim run {path}",
     )
     return DONE
 
 
+def _new_text(
+    title: str, profile: Profile, load: str | None, eccentricity: float | None, iso_vg: float
+) -> str:
+    from .template import scenario_text
+
+    if load is not None and eccentricity is not None:
+        raise InputError("give a load or an eccentricity ratio, not both", key="--load")
+    target = ("load", load or "10 kN") if eccentricity is None else ("eccentricity", eccentricity)
+    return scenario_text(title, profile.value, target, iso_vg)
+
+
+def _shipped_text(name: str) -> str:
+    shipped = shipped_scenarios()
+    if name not in shipped:
+        raise InputError(f"must be one of {', '.join(shipped)}", key="--example", value=name)
+    return shipped[name].read_text(encoding="utf-8")
+
+
 def export(
     output: Output,
-    table: Annotated[Path, typer.Argument(metavar="TABLE", help="Coefficient table (netCDF).")],
+    table: TableArgument,
     to: Annotated[
-        list[ExportFormat], typer.Option("--to", help="Format; may be given more than once.")
+        str,
+        typer.Option(
+            "--to",
+            metavar="FORMATS",
+            help="Some of ross, csv, mat, txt, nc, with commas between.",
+            show_default=False,
+        ),
     ],
     folder: Annotated[
         Path | None,
@@ -82,21 +132,27 @@ def export(
         ),
     ] = None,
 ) -> int:
-    """Write a table for other programs.
+    """Write a table for other programs, or (nc) another program's table for this one.
 
-    Example: rotorsim export coefficients/dal.nc --to csv
+    ross: a bearing for ross.BearingElement.load; csv and txt: columns of numbers; mat: MATLAB.
+    Every file states its frame and signs.
+
+    Example: rotorsim export coefficients/dal.nc --to ross,csv
     """
-    from ..table import CoefficientTable
+    from ..interchange import FORMATS, read_table, write_table
 
-    loaded = CoefficientTable.load(table)
+    kinds = export_formats(to)
+    loaded = read_table(table)
+    name = table.stem.removesuffix(".ross")
     where = folder or table.parent
-    written: dict[str, Path] = {}
-    for kind in dict.fromkeys(to):
-        path = where / f"{table.stem}.{kind.value}"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        written[kind.value] = loaded.to_csv(path)
-    output.document({"files": written})
-    output.show(*(f"{kind}: {path}" for kind, path in written.items()))
+    for kind in kinds:
+        if (where / f"{name}.{FORMATS[kind]}").resolve() == table.resolve():
+            raise InputError(
+                "would be replaced by itself; choose another folder with --output", source=table
+            )
+    files = {kind.value: write_table(loaded, kind.value, where, name) for kind in kinds}
+    output.document({"files": files})
+    output.show("\n".join(f"{kind}: {path}" for kind, paths in files.items() for path in paths))
     return DONE
 
 

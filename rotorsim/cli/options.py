@@ -7,8 +7,28 @@ from typing import Annotated
 
 import typer
 
+from ..shipped import shipped_scenarios
+
+
+def file_or_shipped(path: Path) -> Path:
+    """`path`; or where there is no such file, the shipped scenario of that name."""
+    return path if path.exists() else shipped_scenarios().get(str(path), path)
+
+
 ScenarioArgument = Annotated[
-    Path, typer.Argument(metavar="SCENARIO", help="Scenario file (TOML).", show_default=False)
+    Path,
+    typer.Argument(
+        metavar="SCENARIO",
+        help="Scenario file (TOML), or the name of a shipped scenario, e.g. dal.",
+        show_default=False,
+        callback=file_or_shipped,
+    ),
+]
+TableArgument = Annotated[
+    Path,
+    typer.Argument(
+        metavar="TABLE", help="Table: netCDF, CSV, or a bearing saved by ROSS (TOML, JSON)."
+    ),
 ]
 JsonOption = Annotated[
     bool, typer.Option("--json", help="Print the results as one JSON document on stdout (SI).")

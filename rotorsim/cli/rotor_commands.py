@@ -11,7 +11,13 @@ import typer
 from ..errors import InputError
 from .film_commands import computed_table
 from .inputs import table_path, wanted_mass
-from .options import ModelOption, ScenarioArgument, SchedulerOption, WorkersOption
+from .options import (
+    ModelOption,
+    ScenarioArgument,
+    SchedulerOption,
+    WorkersOption,
+    file_or_shipped,
+)
 from .output import DONE, INCOMPLETE, Output
 
 if TYPE_CHECKING:
@@ -22,7 +28,12 @@ if TYPE_CHECKING:
 def stability(
     output: Output,
     source: Annotated[
-        Path, typer.Argument(metavar="TABLE-or-SCENARIO", help="netCDF or CSV table, or scenario.")
+        Path,
+        typer.Argument(
+            metavar="TABLE-or-SCENARIO",
+            help="Table (netCDF, CSV, ROSS), or scenario.",
+            callback=file_or_shipped,
+        ),
     ],
     mass: Annotated[
         str | None,
@@ -97,16 +108,16 @@ def orbit(
 
     Example: rotorsim orbit scenarios/dal.toml --table coefficients/dal.nc
     """
+    from ..interchange import read_table
     from ..pipeline import orbit_settings, record, simulate_orbit
     from ..scenario import load_scenario
-    from ..table import CoefficientTable
 
     loaded = load_scenario(scenario)
     orbit_settings(loaded)  # what is missing should be said before the table is computed
     if table is None:
         _, coefficients = computed_table(output, loaded, table_path(scenario, Path()), workers)
     else:
-        coefficients = CoefficientTable.load(table)
+        coefficients = read_table(table)
     names = (
         [model] if model else [str(name) for name in coefficients.dataset["thermal_model"].values]
     )
@@ -128,13 +139,11 @@ def _table_of(
     output: Output, source: Path, workers: int | None, scheduler: str | None
 ) -> tuple[Scenario | None, CoefficientTable]:
     """Table at `source`, with the scenario it was made from where that is known."""
+    from ..interchange import is_table, read_table
     from ..scenario import Scenario, load_scenario
-    from ..table import CoefficientTable
 
-    if source.suffix == ".csv":
-        return None, CoefficientTable.from_csv(source)
-    if source.suffix == ".nc":
-        table = CoefficientTable.load(source)
+    if is_table(source):
+        table = read_table(source)
         text = table.dataset.attrs.get("scenario")
         if not text:
             return None, table

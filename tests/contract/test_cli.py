@@ -242,7 +242,7 @@ def test_orbit_grows_with_heating_and_decays_without_as_the_eigenvalues_say(tabu
 def test_export_to_csv_reads_back_as_the_same_table(tabulated):
     done = rotorsim("export", "coefficients/tiny.nc", "--to", "csv", "--json", cwd=tabulated)
     assert done.returncode == 0, done.stderr
-    path = strict(done.stdout)["files"]["csv"]
+    (path,) = strict(done.stdout)["files"]["csv"]
     first, again = (
         strict(rotorsim("stability", name, "--mass", "900 kg", "--json", cwd=tabulated).stdout)
         for name in ("coefficients/tiny.nc", path)

@@ -1,0 +1,92 @@
+"""Which formats there are, and from a file's name to its reader."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..errors import TableError
+from ..table import CoefficientTable
+from . import matlab, ross, text
+from .curves import curves
+
+FORMATS = {
+    "ross": "ross.toml",
+    "csv": "csv",
+    "mat": "mat",
+    "txt": "txt",
+    "nc": "nc",
+}
+"""Names of the formats, and how their files end."""
+_SUFFIXES = (".nc", ".csv", ".json")
+_ONE_CURVE = {"ross": ross.write, "txt": text.write}
+
+
+def write_table(table: CoefficientTable, kind: str, folder: str | Path, name: str) -> list[Path]:
+    """Write a table in one format.
+
+    Parameters
+    ----------
+    table : CoefficientTable
+    kind : str
+        One of `FORMATS`. ``ross`` and ``txt`` hold one bearing in a file: a table of several
+        thermal models or clearances gives several files.
+    folder : str or Path
+        Made if it is missing.
+    name : str
+        Of the files, without suffix.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    TableError
+        No such format, nothing in the table converged, or a CSV of a table with further
+        dimensions.
+    """
+    if kind not in FORMATS:
+        raise TableError(f"must be one of {', '.join(FORMATS)}", key="format", value=kind)
+    where = Path(folder)
+    where.mkdir(parents=True, exist_ok=True)
+    if kind in _ONE_CURVE:
+        write = _ONE_CURVE[kind]
+        return [
+            write(curve, where / f"{'_'.join(filter(None, (name, curve.name)))}.{FORMATS[kind]}")
+            for curve in curves(table)
+        ]
+    path = where / f"{name}.{FORMATS[kind]}"
+    if kind == "mat":
+        return [matlab.write(table, path)]
+    return [table.to_csv(path) if kind == "csv" else table.save(path)]
+
+
+def is_table(path: str | Path) -> bool:
+    """Whether a file is meant as a table: by its suffix, and a TOML file by its contents."""
+    source = Path(path)
+    suffix = source.suffix.lower()
+    return suffix in _SUFFIXES or (suffix == ".toml" and ross.is_saved_by_ross(source))
+
+
+def read_table(path: str | Path) -> CoefficientTable:
+    """Read a table from netCDF (``.nc``), CSV (``.csv``) or a bearing saved by ROSS.
+
+    Raises
+    ------
+    TableError
+        No such file, or not readable as what its name says.
+    """
+    source = Path(path)
+    suffix = source.suffix.lower()
+    if not source.exists():
+        raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)
+    if suffix == ".nc":
+        return CoefficientTable.load(source)
+    if suffix == ".csv":
+        return CoefficientTable.from_csv(source)
+    if suffix in (".toml", ".json"):
+        return ross.read(source)
+    raise TableError(
+        "a table's name ends in .nc (netCDF), .csv, or .toml or .json (ROSS)", source=source
+    )

@@ -1,0 +1,138 @@
+"""Bearings as ROSS saves them: ``BearingElement.load`` reads the files, and its own are read here.
+
+A file is TOML, which allows comments, or on reading JSON; one table whose keys are the arguments of
+ROSS's ``BearingElement``.
+"""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..atomic import write_text
+from ..errors import TableError
+from ..table import CoefficientTable
+from ..table.variables import COEFFICIENTS
+from .conventions import ROSS_FRAME, from_ross, to_ross
+from .curves import Curve
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_MAX_BYTES = 50_000_000
+
+
+def write(curve: Curve, path: Path) -> Path:
+    """Write one curve as a file for ``ross.BearingElement.load``."""
+    head = [
+        *curve.facts,
+        f'Read it with: bearing = ross.BearingElement.load("{path.name}"), then set bearing.n',
+        "(the node; the file says 0), and another bearing.tag for each use. Speeds (frequency) in",
+        "rad/s, the shaft's.",
+        *ROSS_FRAME,
+    ]
+    tag = "".join(letter for letter in path.stem.removesuffix(".ross") if letter.isprintable())
+    stiffness = to_ross(curve.stiffness).reshape(-1, 4)
+    damping = to_ross(curve.damping).reshape(-1, 4)
+    lines = [f"# {line}" for fact in head for line in fact.splitlines()]
+    # The dots and quotes a name may hold would end a bare key.
+    lines += ["", f"[{json.dumps('BearingElement_' + tag)}]", "n = 0", f"tag = {json.dumps(tag)}"]
+    columns = {
+        "frequency": curve.speed,
+        **dict(zip(COEFFICIENTS, np.hstack([stiffness, damping]).T, strict=True)),
+    }
+    # Adding 0.0 turns the negative zeros that turning makes into zeros.
+    lines += [
+        f"{name} = [{', '.join(repr(float(value) + 0.0) for value in column)}]"
+        for name, column in columns.items()
+    ]
+    write_text(path, "\n".join(lines) + "\n")
+    return path
+
+
+def is_saved_by_ross(path: Path) -> bool:
+    """Whether a file is TOML or JSON with a bearing in it."""
+    try:
+        return _is_ross(_entries(path))
+    except TableError:
+        return False
+
+
+def _is_ross(entries: Any) -> bool:
+    """Whether a file's entries are elements that ROSS saved."""
+    return isinstance(entries, dict) and any(
+        isinstance(entry, dict) and {"kxx", "cxx"} <= set(entry) for entry in entries.values()
+    )
+
+
+def read(path: str | Path) -> CoefficientTable:
+    """Table of the one bearing that ROSS, or `write`, saved to `path` (TOML or JSON).
+
+    Raises
+    ------
+    TableError
+        Not such a file, several bearings, no speeds, or coefficients that are no numbers.
+    """
+    source = Path(path)
+    entries = _entries(source)
+    if not _is_ross(entries):
+        raise TableError("not a bearing that ROSS saved: no entry has kxx and cxx", source=source)
+    bearings = [e for e in entries.values() if isinstance(e, dict) and {"kxx", "cxx"} <= set(e)]
+    if len(bearings) > 1:
+        raise TableError("holds several bearings; save each to a file of its own", source=source)
+    return _table(bearings[0], source)
+
+
+def _entries(source: Path) -> Any:
+    try:
+        if source.stat().st_size > _MAX_BYTES:
+            raise TableError("too large to be a bearing", source=source)
+        text = source.read_text(encoding="utf-8-sig")
+        return json.loads(text) if source.suffix.lower() == ".json" else tomllib.loads(text)
+    except OSError as error:
+        raise TableError(f"cannot be read: {error.strerror}", source=source) from None
+    except (ValueError, RecursionError) as error:
+        raise TableError(f"not a TOML or JSON file: {error}", source=source) from None
+
+
+def _table(bearing: dict[str, Any], source: Path) -> CoefficientTable:
+    from ..table.assembly import build
+
+    if bearing.get("frequency") is None:
+        raise TableError(
+            "has constant coefficients; give their speed in rad/s as a list frequency = [...]",
+            source=source,
+            key="frequency",
+        )
+    speeds = _column(bearing, "frequency", None, source)
+    if not speeds.size or speeds[0] <= 0.0 or np.any(np.diff(speeds) <= 0.0):
+        raise TableError("must be above 0 and ascend", source=source, key="frequency")
+    # As in ROSS: the second direct coefficient defaults to the first, the cross ones to zero.
+    given = {"kyy": bearing["kxx"], "cyy": bearing["cxx"]} | bearing
+    columns = [_column(given, name, speeds.size, source) for name in COEFFICIENTS]
+    inertia = [n for n in ("mxx", "mxy", "myx", "myy") if np.any(np.asarray(given.get(n, 0.0)))]
+    if inertia:
+        raise TableError("added mass is not known here", source=source, key=inertia[0])
+    values = np.stack(columns, axis=-1).reshape(1, 1, -1, 2, 2, 2)
+    turned = from_ross(values).reshape(1, 1, -1, 8)
+    variables: dict[str, Any] = {n: turned[..., i] for i, n in enumerate(COEFFICIENTS)}
+    variables["status"] = np.full(turned.shape[:-1], "converged", dtype=object)
+    coordinates = {"thermal_model": ["given"], "radial_clearance": [np.nan], "speed": speeds}
+    title = f"Coefficients from {source.name}"
+    return CoefficientTable(build(coordinates, variables, {"title": title}))
+
+
+def _column(
+    bearing: dict[str, Any], name: str, count: int | None, source: Path
+) -> NDArray[np.float64]:
+    value = bearing.get(name, 0.0)
+    numbers = value if isinstance(value, list) else [value] * (count or 1)
+    if count is not None and len(numbers) != count:
+        raise TableError(f"has {len(numbers)} values for {count} speeds", source=source, key=name)
+    if not all(isinstance(n, (int, float)) and abs(n) < 1e300 for n in numbers):
+        raise TableError("must be finite numbers", source=source, key=name)
+    return np.array(numbers, dtype=float)

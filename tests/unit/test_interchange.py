@@ -1,0 +1,274 @@
+"""Files for other programs: what they say, what comes back, and the turn to the frame of ROSS."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import tomllib
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rotorsim.errors import TableError
+from rotorsim.interchange import FORMATS, read_table, write_table
+from rotorsim.interchange.conventions import from_ross, to_ross
+from rotorsim.operating_point import OperatingPoint
+from rotorsim.stability.over_speed import rotor_modes
+from rotorsim.stability.rotor import GeneralRotor
+from rotorsim.status import SolveStatus, Stability
+from rotorsim.table import CoefficientTable
+from rotorsim.table.variables import COEFFICIENTS
+
+DATA = Path(__file__).parents[1] / "data"
+SPEEDS = (100.0, 250.0, 400.0, 700.0)
+
+
+def make_point(model: str, clearance: float, speed: float) -> OperatingPoint:
+    k = (1.0 + 1e4 * clearance) * np.array([[2e8, 5e8], [-3e8, 1.5e8]]) * (1.0 + speed / 500.0)
+    c = np.array([[8e5, 1e5], [1e5, 6e5]]) * np.exp(-speed / 900.0) * len(model)
+    return OperatingPoint(
+        status=SolveStatus.CONVERGED, message="", thermal_model=model, cavitation="reynolds",
+        speed=speed, radial_clearance=clearance, eccentricity_ratio=0.5, attitude_angle=0.9,
+        load=1e4 + speed, sommerfeld_number=0.1, max_pressure=1e6, max_temperature=350.0,
+        mean_temperature=330.0, friction_force=600.0, power_loss=3e4, side_flow=1e-5,
+        min_film_thickness=0.5 * clearance, stiffness=k, damping=c, critical_mass=None,
+        critical_mass_dimensionless=None, whirl_frequency_ratio=None,
+        stability=Stability.ALWAYS_STABLE, iterations=7, residual=1e-9,
+    )  # fmt: skip
+
+
+def make_table(models=("isothermal", "thd"), clearances=(1e-4, 1.5e-4)) -> CoefficientTable:
+    points = [make_point(m, c, s) for m in models for c in clearances for s in SPEEDS]
+    return CoefficientTable.from_points(points, {"title": "a test"})
+
+
+@pytest.fixture(scope="module")
+def table() -> CoefficientTable:
+    return make_table()
+
+
+@pytest.fixture(scope="module")
+def one(table) -> CoefficientTable:
+    return table.select(thermal_model="thd", radial_clearance=1e-4)
+
+
+def ross_entries(path: Path) -> dict:
+    (entry,) = tomllib.loads(path.read_text(encoding="utf-8")).values()
+    return entry
+
+
+@pytest.mark.parametrize("kind", ["csv", "ross", "nc"])
+def test_what_is_written_reads_back_to_the_last_digit(kind, one, tmp_path):
+    (path,) = write_table(one, kind, tmp_path / "new", "bearing")
+    again = read_table(path)
+    assert np.array_equal(again.speeds, one.speeds)
+    assert np.array_equal(again.stiffness, one.stiffness)
+    assert np.array_equal(again.damping, one.damping)
+    assert again.converged.all()
+
+
+@pytest.mark.parametrize("kind", ["csv", "ross", "txt", "mat"])
+def test_every_file_states_frame_and_signs(kind, one, tmp_path):
+    (path,) = write_table(one, kind, tmp_path, "bearing")
+    text = path.read_bytes().decode("utf-8", errors="ignore")
+    assert "K_ij = -dF_i/dx_j" in text
+    assert "load" in text
+    assert ("Frame of ROSS" in text) == (kind == "ross")
+
+
+def test_one_file_for_each_bearing_where_the_format_holds_one(table, tmp_path):
+    for kind in ("ross", "txt"):
+        paths = write_table(table, kind, tmp_path, "dal")
+        assert [path.name.removesuffix(f".{FORMATS[kind]}") for path in paths] == [
+            "dal_isothermal_100um", "dal_isothermal_150um", "dal_thd_100um", "dal_thd_150um",
+        ]  # fmt: skip
+    entry = ross_entries(tmp_path / "dal_thd_150um.ross.toml")
+    last = table.select(thermal_model="thd", radial_clearance=1.5e-4)
+    assert entry["kxx"] == last.dataset["kyy"].values.ravel().tolist()
+
+
+def test_the_turn_keeps_what_the_bearing_does_to_a_rotor():
+    """Force follows displacement the same way in both frames; and the turn is one of the axes."""
+    rng = np.random.default_rng(1)
+    stiffness, displacement = rng.normal(size=(2, 2)), rng.normal(size=2)
+    # x of ROSS is y of the load frame, y of ROSS is against the load.
+    turn = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    assert np.linalg.det(turn) == 1.0  # no mirror: the sense of rotation stays
+    assert turn @ [1.0, 0.0] == pytest.approx([0.0, -1.0])  # the load points down
+    force = -stiffness @ displacement
+    assert -to_ross(stiffness) @ (turn @ displacement) == pytest.approx(turn @ force)
+    assert from_ross(to_ross(stiffness)) == pytest.approx(stiffness)
+
+
+def test_more_load_moves_the_journal_down_and_on_with_the_rotation(one, tmp_path):
+    """In the frame of ROSS the rotation is from x to y: at the bottom that is towards +x."""
+    (path,) = write_table(one, "ross", tmp_path, "b")
+    entry = ross_entries(path)
+    k = np.array([[entry[f"k{i}{j}"][0] for j in "xy"] for i in "xy"])
+    x, y = np.linalg.solve(k, [0.0, -1.0])
+    there = np.linalg.solve(one.stiffness[0, 0, 0], [1.0, 0.0])
+    assert (x, y) == pytest.approx((there[1], -there[0]))
+    assert x > 0.0
+    assert y < 0.0
+
+
+def reference() -> tuple[dict, GeneralRotor]:
+    stored = json.loads((DATA / "ross_campbell.json").read_text(encoding="utf-8"))
+    rotor = GeneralRotor(
+        stored["mass"], stored["damping"], stored["gyroscopic"], stored["stiffness"],
+        bearing_nodes=tuple(stored["bearing_nodes"]), dofs_per_node=stored["dofs_per_node"],
+    )  # fmt: skip
+    return stored, rotor
+
+
+def test_the_exported_bearing_gives_the_campbell_diagram_of_ross(tmp_path):
+    """The numbers of the file as they stand, on the round rotor whose eigenvalues ROSS gave."""
+    stored, rotor = reference()
+    source = CoefficientTable.from_csv(DATA / "ross_bearing.csv")
+    (path,) = write_table(source, "ross", tmp_path, "b")
+    entry = ross_entries(path)
+    as_they_stand = tmp_path / "turned.csv"
+    columns = [entry["frequency"], *(entry[name] for name in COEFFICIENTS)]
+    units = ["rad/s", *["N/m"] * 4, *["N s/m"] * 4]
+    head = ",".join(f"{n} [{u}]" for n, u in zip(("speed", *COEFFICIENTS), units, strict=True))
+    rows = [",".join(map(repr, row)) for row in zip(*columns, strict=True)]
+    as_they_stand.write_text("\n".join([head, *rows]), encoding="utf-8")
+    turned = CoefficientTable.from_csv(as_they_stand)
+    assert not np.allclose(turned.stiffness, source.stiffness, rtol=0.1)
+    branches = rotor_modes(turned, rotor).oscillating()
+    for row, listed in zip(branches.eigenvalues, stored["eigenvalues"], strict=True):
+        theirs = np.array([complex(*pair) for pair in listed])
+        nearest = np.abs(row[None, :] - theirs[:, None]).min(axis=1)
+        assert np.all(nearest < 1e-3 * np.abs(theirs))
+
+
+@pytest.mark.skipif(importlib.util.find_spec("ross") is None, reason="needs the extra ross")
+def test_ross_loads_the_file_and_draws_the_same_campbell_diagram(tmp_path):
+    spec = importlib.util.spec_from_file_location(
+        "ross_campbell", Path(__file__).parents[2] / "benchmarks" / "ross_campbell.py"
+    )
+    assert spec is not None
+    assert spec.loader is not None
+    script = importlib.util.module_from_spec(spec)
+    source = CoefficientTable.from_csv(DATA / "ross_bearing.csv")
+    (path,) = write_table(source, "ross", tmp_path, "b")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # ROSS and what it imports warn about their own affairs
+        spec.loader.exec_module(script)
+        import ross
+
+        rotor = script.build_rotor(script.read_coefficients(DATA / "ross_bearing.csv"))
+        loaded = []
+        for node in script.BEARING_NODES:
+            bearing = ross.BearingElement.load(path)
+            bearing.n, bearing.tag = node, f"bearing {node}"
+            loaded.append(bearing)
+        exported = ross.Rotor(rotor.shaft_elements, rotor.disk_elements, loaded)
+        for speed in source.speeds:
+            ours = exported.run_modal(speed, sparse=False).evalues
+            theirs = rotor.run_modal(speed, sparse=False).evalues
+            apart = np.abs(ours[None, :] - theirs[:, None]).min(axis=1)
+            assert np.all(apart < 1e-5 * np.abs(theirs) + 1e-3)
+        # And back: what ROSS saves is read here.
+        for suffix in ("toml", "json"):
+            loaded[0].save(tmp_path / f"saved.{suffix}")
+            again = read_table(tmp_path / f"saved.{suffix}")
+            assert np.allclose(again.stiffness, source.stiffness, rtol=1e-12)
+
+
+def test_plain_columns_load_with_numpy(one, tmp_path):
+    (path,) = write_table(one, "txt", tmp_path, "b")
+    columns = np.loadtxt(path)
+    assert columns.shape == (len(SPEEDS), 9)
+    assert columns[:, 0] == pytest.approx(np.array(SPEEDS) * 30.0 / np.pi, rel=1e-8)
+    assert columns[:, 1:5].reshape(-1, 2, 2) == pytest.approx(one.stiffness[0, 0], rel=1e-8)
+    assert columns[:, 5:].reshape(-1, 2, 2) == pytest.approx(one.damping[0, 0], rel=1e-8)
+
+
+def test_matlab_file(table, tmp_path):
+    from scipy.io import loadmat
+
+    (path,) = write_table(table, "mat", tmp_path, "b")
+    read = loadmat(path, simplify_cells=True)
+    assert read["dimensions"].tolist() == ["speed", "radial_clearance", "thermal_model"]
+    assert read["thermal_model"].tolist() == ["isothermal", "thd"]
+    assert read["speed"].tolist() == list(SPEEDS)
+    assert read["units"]["K"] == "N m-1"
+    for index in np.ndindex(2, 2, 4):
+        model, clearance, speed = index
+        place = (slice(None), slice(None), speed, clearance, model)
+        assert np.array_equal(read["K"][place], table.stiffness[index])
+        assert np.array_equal(read["C"][place], table.damping[index])
+        assert read["load"][place[2:]] == table.dataset["load"].values[index]
+        assert read["status"][place[2:]] == "converged"
+
+
+def test_points_that_did_not_converge_are_left_out_and_named(tmp_path):
+    points = [make_point("thd", 1e-4, speed) for speed in SPEEDS]
+    lost = np.full((2, 2), np.nan)
+    points[2] = replace(points[2], status=SolveStatus.NOT_CONVERGED, stiffness=lost, damping=lost)
+    gap = CoefficientTable.from_points(points)
+    for kind in ("ross", "txt"):
+        (path,) = write_table(gap, kind, tmp_path, "b")
+        text = path.read_text(encoding="utf-8")
+        assert "Left out, not converged, rpm: 3819.72" in text
+        assert "nan" not in text
+    assert ross_entries(tmp_path / "b.ross.toml")["frequency"] == [100.0, 250.0, 700.0]
+    none = CoefficientTable.from_points([points[2]])
+    with pytest.raises(TableError, match="no point of the table converged"):
+        write_table(none, "ross", tmp_path, "none")
+
+
+def test_a_single_speed(tmp_path):
+    table = CoefficientTable.from_points([make_point("thd", 1e-4, 100.0)])
+    (path,) = write_table(table, "ross", tmp_path, 'od"d\\.name')
+    assert np.array_equal(read_table(path).stiffness, table.stiffness)
+
+
+GOOD = {"n": 0, "frequency": [1.0, 2.0], "kxx": [1.0, 2.0], "cxx": [3.0, 4.0], "kxy": 5.0}
+
+
+def test_bearings_of_ross_with_defaults(tmp_path):
+    path = tmp_path / "b.json"
+    path.write_text(json.dumps({"BearingElement_x": GOOD}), encoding="utf-8")
+    read = read_table(path)
+    # kyy defaults to kxx; kxy = 5 in the frame of ROSS is -5 as k_yx in the load frame.
+    assert read.stiffness[0, 0].tolist() == [[[1.0, 0.0], [-5.0, 1.0]], [[2.0, 0.0], [-5.0, 2.0]]]
+    assert read.damping[0, 0, 1].tolist() == [[4.0, 0.0], [0.0, 4.0]]
+
+
+@pytest.mark.parametrize(
+    ("name", "contents", "message"),
+    [
+        ("b.json", "{", "not a TOML or JSON"),
+        ("b.json", "[" * 100_000, "not a TOML or JSON"),
+        ("b.toml", "\x00\x01", "not a TOML or JSON"),
+        ("b.json", "[1]", "not a bearing that ROSS saved"),
+        ("b.toml", 'title = "x"', "not a bearing that ROSS saved"),
+        ("b.json", {"a": GOOD, "b": GOOD}, "several bearings"),
+        ("b.json", {"a": GOOD | {"frequency": None}}, "frequency: has constant"),
+        ("b.json", {"a": GOOD | {"frequency": [2.0, 1.0]}}, "frequency: must be above 0 and"),
+        ("b.json", {"a": GOOD | {"frequency": [0.0, 1.0]}}, "frequency: must be above 0 and"),
+        ("b.json", {"a": GOOD | {"kyx": [1.0]}}, "kyx: has 1 values for 2 speeds"),
+        ("b.json", {"a": GOOD | {"cxy": ["x", 1.0]}}, "cxy: must be finite numbers"),
+        ("b.json", {"a": GOOD | {"cxy": [float("nan"), 1.0]}}, "cxy: must be finite numbers"),
+        ("b.json", {"a": GOOD | {"mxx": [1.0, 1.0]}}, "mxx: added mass"),
+        ("b.xls", "x", "a table's name ends in"),
+    ],
+)
+def test_foreign_files_are_refused_with_a_reason(name, contents, message, tmp_path):
+    text = contents if isinstance(contents, str) else json.dumps(contents)
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(TableError, match=message) as caught:
+        read_table(tmp_path / name)
+    assert name in str(caught.value)
+
+
+def test_unknown_formats_and_missing_files_are_refused(one, tmp_path):
+    with pytest.raises(TableError, match="must be one of ross, csv, mat"):
+        write_table(one, "xlsx", tmp_path, "b")
+    with pytest.raises(TableError, match="no such file"):
+        read_table(tmp_path / "none.nc")
