@@ -43,6 +43,10 @@ class FilmFlow:
         Volume fluxes [m3/s] along +theta or +y.
     liquid_fraction : (n, m) array
         1 in the full film.
+    brought : (n, m) array
+        Part of the oil in each cell that came in through an inlet. Where a film re-forms the
+        rupture models without conservation of mass add what is missing; it must not reach a
+        groove as hot oil.
     """
 
     step: Array
@@ -52,6 +56,7 @@ class FilmFlow:
     inlet: Flags
     flux: Array
     liquid_fraction: Array
+    brought: Array
 
 
 def film_flow(state: FilmState, surface_speed: float) -> FilmFlow:
@@ -73,14 +78,15 @@ def film_flow(state: FilmState, surface_speed: float) -> FilmFlow:
         drag = _drag_multiplier(operator, layers) * film
         flux[:2] += operator.drag * film
         inlet = ~operator.linked[0] & film
-        return FilmFlow(step, drive, drag, shared, inlet, flux, solution.liquid)
-    fraction = np.ones(shape[1:])
+        everything = np.ones(shape[1:])
+        return FilmFlow(step, drive, drag, shared, inlet, flux, solution.liquid, everything)
+    fraction, brought = np.ones(shape[1:]), np.ones(shape[1:])
     _carry(
         operator.linked, operator.face_thickness, operator.drag, operator.held,
         state.thickness.center, layers.g, solution.full, surface_speed, operator.dy, drive, drag,
-        shared, inlet, flux, fraction,
+        shared, inlet, flux, fraction, brought,
     )  # fmt: skip
-    return FilmFlow(step, drive, drag, shared, inlet, flux, fraction)
+    return FilmFlow(step, drive, drag, shared, inlet, flux, fraction, brought)
 
 
 def _drag_multiplier(operator: FilmOperator, layers: LayerIntegrals) -> Array:
@@ -130,7 +136,7 @@ def _pressure_part(
 @kernel
 def _carry(
     linked, face_h, operator_drag, held, h, g, full, speed, dy, drive, drag, shared, inlet, flux,
-    fraction,
+    fraction, brought,
 ):  # fmt: skip
     n, m = full.shape
     for j in range(m):
@@ -154,6 +160,10 @@ def _carry(
                 inlet[i, j] = carried or not linked[0, i, j]
                 drag[0, i, j] = speed * face_h[0, i, j] * dy[j]
                 flux[0, i, j] += operator_drag[0, i, j]
+            if linked[0, i, j] and s > 0:
+                brought[i, j] = brought[before, j]
+                if carried and full[i, j] and flux[0, i, j] > flux[1, before, j]:
+                    brought[i, j] *= flux[1, before, j] / flux[0, i, j]
             if full[i, j]:
                 drag[1, i, j] = speed * face_h[1, i, j] * dy[j]
                 flux[1, i, j] += operator_drag[1, i, j]

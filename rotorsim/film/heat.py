@@ -179,6 +179,7 @@ def _mixed(
         into = layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
         number = wells[face][open_]
         arriving, leaving = np.maximum(into, 0.0), np.maximum(-into, 0.0)
+        arriving *= energy.flow.brought[open_][:, None]
         np.add.at(given, number, arriving.sum(axis=1))
         np.add.at(heat, number, (arriving * temperature[open_]).sum(axis=1))
         np.add.at(taken, number, leaving.sum(axis=1))

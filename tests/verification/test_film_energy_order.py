@@ -121,7 +121,7 @@ def build(film, level: int):
     viscosity = np.full((n, m, k), VISCOSITY)
     flow = FilmFlow(
         step=np.zeros((4, n, m)), drive=drive, drag=drag, shared=linked, inlet=inlet,
-        flux=np.zeros((4, n, m)), liquid_fraction=np.ones((n, m)),
+        flux=np.zeros((4, n, m)), liquid_fraction=np.ones((n, m)), brought=np.ones((n, m)),
     )  # fmt: skip
     problem = EnergyProblem(
         flow=flow, layers=layer_integrals(viscosity), heating=np.zeros((3, n, m)),
