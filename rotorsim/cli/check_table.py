@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..model import EccentricityTarget
-from .tables import KELVIN, RPM, grid, number
+from ..pipeline.wording import KELVIN, RPM, number
+from .tables import grid
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

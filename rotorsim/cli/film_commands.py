@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import re
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -180,7 +179,7 @@ def computed_table(
 
 def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     """Say what did not converge and what left the model's range; the exit code."""
-    from .progress import describe
+    from ..pipeline.wording import describe, grouped_warnings
 
     bad = [point for point in points if not point.converged]
     for point in bad[:5]:
@@ -190,24 +189,3 @@ def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     for text in grouped_warnings(points):
         output.warn(text)
     return INCOMPLETE if bad else DONE
-
-
-def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
-    """One line for each kind of warning: its last wording, and at how many points from where on.
-
-    Warnings that differ in their numbers alone are of one kind.
-    """
-    from .progress import describe
-
-    kinds: dict[str, list[tuple[OperatingPoint, str]]] = {}
-    for point in points:
-        for text in point.warnings:
-            kinds.setdefault(re.sub(r"[\d.]+", "0", text), []).append((point, text))
-    lines = []
-    for found in kinds.values():
-        (first, _), (last, text) = found[0], found[-1]
-        where = describe(first)
-        if len(found) > 1:
-            where = f"{len(found)} of {len(points)} points, from {where} to {describe(last)}"
-        lines.append(f"{text} (at {where})")
-    return lines

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
+
+from ..pipeline.wording import describe
 
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
@@ -50,6 +52,28 @@ def _bar(output: Output, total: int) -> Iterator[Progress]:
         bar.update(task, last="")
 
 
+@contextmanager
+def revolution_progress(
+    output: Output, label: str, total: float
+) -> Iterator[Callable[[float], None]]:
+    """Give the callback for the revolutions done of `total`; a bar, on a terminal only."""
+    if output.quiet or not output.errors.is_terminal:
+        yield lambda _done: None
+        return
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bar
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeRemainingColumn(elapsed_when_finished=True),
+    )
+    with Bar(*columns, console=output.errors) as bar:
+        task = bar.add_task(label, total=total)
+        yield lambda done: bar.update(task, completed=done)
+
+
 class _Lines:
     def __init__(self, output: Output) -> None:
         self.output = output
@@ -63,16 +87,3 @@ class _Lines:
         spent = now - self.start
         left = f", about {spent / done * (total - done):.0f} s left" if done < total else ""
         self.output.note(f"film points {done}/{total} after {spent:.0f} s{left}")
-
-
-def describe(point: OperatingPoint) -> str:
-    """``thd 100 um 15000 rpm``, and the status where it is not converged."""
-    text = (
-        f"{point.thermal_model} {point.radial_clearance * 1e6:.4g} um {in_rpm(point.speed):.0f} rpm"
-    )
-    return text if point.converged else f"{text}: {point.status.value}"
-
-
-def in_rpm(speed: float) -> float:
-    """Revolutions per minute from rad/s."""
-    return speed * 30.0 / 3.141592653589793

@@ -6,30 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .tables import RPM, grid, number
+from ..pipeline.wording import RPM, VERDICTS, curve_title, number, thresholds_text
+from .tables import grid
 
 if TYPE_CHECKING:
     from rich.table import Table
 
     from ..pipeline import StabilityCurve
-
-_VERDICTS = {
-    "always_stable": "stable at any mass",
-    "always_unstable": "unstable at any mass",
-    "reversed_threshold": "stable above",
-    "": "not converged",
-}
-
-
-def curve_title(curve: StabilityCurve) -> str:
-    """``thd, c = 100 um``, and what else the table was stacked along."""
-    extra = [
-        f"{name} = {number(value)}"
-        for name, value in curve.choices.items()
-        if name not in ("thermal_model", "radial_clearance")
-    ]
-    clearance = f"c = {number(curve.choices['radial_clearance'] * 1e6)} um"
-    return ", ".join([str(curve.choices["thermal_model"]), clearance, *extra])
 
 
 def curve_table(curve: StabilityCurve) -> Table:
@@ -41,7 +24,7 @@ def curve_table(curve: StabilityCurve) -> Table:
     for index, speed in enumerate(curve.speed):
         mass = curve.critical_mass[index]
         verdict = str(curve.stability[index])
-        said = _VERDICTS.get(verdict)
+        said = VERDICTS.get(verdict)
         if verdict == "threshold" and curve.mass is not None:
             said = "stable" if curve.mass < mass else "unstable"
         cells = [
@@ -70,18 +53,6 @@ def summary_table(curves: Sequence[StabilityCurve]) -> Table:
     return table
 
 
-def thresholds_text(curve: StabilityCurve) -> str:
-    """Threshold speeds, or which verdict holds throughout."""
-    if curve.threshold_speeds:
-        return ", ".join(f"{speed * RPM:.0f}" for speed in curve.threshold_speeds)
-    if curve.decay_rate is None:
-        return "-"
-    known = curve.decay_rate[~_nan(curve.decay_rate)]
-    if not len(known):
-        return "-"
-    return "none: stable throughout" if known.min() > 0.0 else "none: unstable throughout"
-
-
 def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """One line for each orbit (see `pipeline.summary.describe_orbit`)."""
     head = ["model", "run", "rpm", "turns", "max eps", "growth 1/s"]
@@ -102,6 +73,37 @@ def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
             row["status"].value.replace("_", " "),
         )
     return table
+
+
+def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
+    """What each run came to: whirl, ellipse, least film; and what its force takes for granted."""
+    table = grid("What they come to", "model", "whirl ratio", "swing um", "ellipse um", "h_min um")
+    notes = []
+    for row in rows:
+        table.add_row(
+            row["thermal_model"],
+            number(row["whirl_frequency_ratio"]),
+            number(row["amplitude"] * 1e6),
+            _ellipse_text(row["whirl"] or row["synchronous"]),
+            number(row["min_film"] * 1e6),
+        )
+        found = row["whirl_range"]
+        if found is not None:
+            notes.append(
+                f"{row['thermal_model']}: whirls from {found['first_speed'] * RPM:.0f} to "
+                f"{found['last_speed'] * RPM:.0f} rpm, most at "
+                f"{found['strongest_speed'] * RPM:.0f} rpm with "
+                f"{number(found['amplitude'] * 1e6, 3)} um at {found['frequency'] * RPM / 60:.1f} Hz"
+            )
+        notes += [f"{row['thermal_model']}: {row['message']}"] if row["message"] else []
+    return [table, *notes]
+
+
+def _ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
+    if ellipse is None:
+        return "-"
+    axes = f"{number(ellipse['semi_major'] * 1e6, 3)} x {number(ellipse['semi_minor'] * 1e6, 3)}"
+    return f"{axes} {ellipse['direction']}"
 
 
 def _nan(values: Any) -> Any:

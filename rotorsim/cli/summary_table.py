@@ -6,8 +6,16 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from .stability_tables import curve_title, orbit_table, thresholds_text
-from .tables import KELVIN, RPM, grid, number
+from ..pipeline.wording import (
+    KELVIN,
+    RPM,
+    curve_title,
+    number,
+    thresholds_text,
+    verdict_at_top,
+)
+from .stability_tables import orbit_table
+from .tables import grid
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -89,16 +97,9 @@ def threshold_table(curves: Sequence[StabilityCurve]) -> Table:
     top = f"at {curves[0].speed[-1] * RPM:.0f} rpm"
     table = grid(title, "bearing", *([] if mass is None else [top]), "threshold rpm")
     for curve in curves:
-        decay = curve.decay_rate
-        verdict = [] if decay is None else [_verdict(float(decay[-1]))]
+        verdict = [] if mass is None else [verdict_at_top(curve)]
         table.add_row(curve_title(curve), *verdict, thresholds_text(curve))
     return table
-
-
-def _verdict(decay: float) -> str:
-    if math.isnan(decay):
-        return "-"
-    return "stable" if decay > 0.0 else "unstable"
 
 
 def files_table(files: Mapping[str, Any]) -> Table:

@@ -10,18 +10,10 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
+from ..pipeline.wording import KELVIN, RPM, critical_mass_text, number
+
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
-
-RPM = 30.0 / math.pi
-KELVIN = 273.15
-
-
-def number(value: float | None, digits: int = 4) -> str:
-    """Short text of a number; a dash where there is none."""
-    if value is None or not math.isfinite(value):
-        return "-"
-    return f"{value:.{digits}g}" if abs(value) < 1e5 else f"{value:.{digits - 1}e}"
 
 
 def grid(title: str, *columns: str) -> Table:
@@ -83,15 +75,6 @@ def status_text(point: OperatingPoint) -> Text:
     """Status, coloured."""
     style = "green" if point.converged else "bold red"
     return Text("ok" if point.converged else point.status.value, style=style)
-
-
-def critical_mass_text(point: OperatingPoint) -> str:
-    """Critical mass [kg], or the verdict where no mass is critical."""
-    if point.critical_mass is None:
-        return {None: "-", "always_stable": "stable", "always_unstable": "unstable"}.get(
-            point.stability, "-"
-        )
-    return number(point.critical_mass)
 
 
 def point_table(point: OperatingPoint) -> Table:

@@ -429,7 +429,7 @@ def test_warnings_that_differ_in_numbers_alone_are_told_once():
     import dataclasses
 
     from rotorsim.chunks import failed_point
-    from rotorsim.cli.film_commands import grouped_warnings
+    from rotorsim.pipeline.wording import grouped_warnings
     from rotorsim.scenario import Scenario
 
     case = Scenario.from_text(TINY).case(thermal_model="thd")

@@ -1,0 +1,102 @@
+"""Results in words and short numbers, the same on the terminal, in the report and in notebooks."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..operating_point import OperatingPoint
+    from .stability import StabilityCurve
+
+RPM = 30.0 / math.pi
+KELVIN = 273.15
+VERDICTS = {
+    "always_stable": "stable at any mass",
+    "always_unstable": "unstable at any mass",
+    "reversed_threshold": "stable above",
+    "": "not converged",
+}
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """Short text of a number; a dash where there is none.
+
+    Examples
+    --------
+    >>> number(1234.5678), number(7.0e6), number(None)
+    ('1235', '7.000e+06', '-')
+    """
+    if value is None or not math.isfinite(value):
+        return "-"
+    return f"{value:.{digits}g}" if abs(value) < 1e5 else f"{value:.{digits - 1}e}"
+
+
+def describe(point: OperatingPoint) -> str:
+    """``thd 100 um 15000 rpm``, and the status where it is not converged."""
+    text = (
+        f"{point.thermal_model} {point.radial_clearance * 1e6:.4g} um {point.speed * RPM:.0f} rpm"
+    )
+    return text if point.converged else f"{text}: {point.status.value}"
+
+
+def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
+    """One line for each kind of warning: its last wording, and at how many points from where on.
+
+    Warnings that differ in their numbers alone are of one kind.
+    """
+    kinds: dict[str, list[tuple[OperatingPoint, str]]] = {}
+    for point in points:
+        for text in point.warnings:
+            kinds.setdefault(re.sub(r"[\d.]+", "0", text), []).append((point, text))
+    lines = []
+    for found in kinds.values():
+        (first, _), (last, text) = found[0], found[-1]
+        where = describe(first)
+        if len(found) > 1:
+            where = f"{len(found)} of {len(points)} points, from {where} to {describe(last)}"
+        lines.append(f"{text} (at {where})")
+    return lines
+
+
+def critical_mass_text(point: OperatingPoint) -> str:
+    """Critical mass [kg], or the verdict where no mass is critical."""
+    if point.critical_mass is None:
+        return {"always_stable": "stable", "always_unstable": "unstable"}.get(
+            point.stability or "", "-"
+        )
+    return number(point.critical_mass)
+
+
+def curve_title(curve: StabilityCurve) -> str:
+    """``thd, c = 100 um``, and what else the table was stacked along."""
+    extra = [
+        f"{name} = {number(value)}"
+        for name, value in curve.choices.items()
+        if name not in ("thermal_model", "radial_clearance")
+    ]
+    clearance = curve.choices["radial_clearance"]
+    given = [f"c = {number(clearance * 1e6)} um"] if math.isfinite(clearance) else []
+    return ", ".join([str(curve.choices["thermal_model"]), *given, *extra])
+
+
+def thresholds_text(curve: StabilityCurve) -> str:
+    """Threshold speeds [rpm], or which verdict holds throughout."""
+    if curve.threshold_speeds:
+        return ", ".join(f"{speed * RPM:.0f}" for speed in curve.threshold_speeds)
+    if curve.decay_rate is None:
+        return "-"
+    known = [float(rate) for rate in curve.decay_rate if math.isfinite(rate)]
+    if not known:
+        return "-"
+    return "none: stable throughout" if min(known) > 0.0 else "none: unstable throughout"
+
+
+def verdict_at_top(curve: StabilityCurve) -> str:
+    """Whether the rotor is stable at the highest speed; a dash where that is not known."""
+    if curve.decay_rate is None or math.isnan(curve.decay_rate[-1]):
+        return "-"
+    return "stable" if curve.decay_rate[-1] > 0.0 else "unstable"
