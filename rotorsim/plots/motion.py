@@ -11,7 +11,16 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
-from .style import MICRO, RPM, axes_or_new, figure_of, model_label, model_style, new_axes
+from .style import (
+    MICRO,
+    RPM,
+    axes_or_new,
+    figure_of,
+    model_label,
+    model_style,
+    new_axes,
+    series_style,
+)
 
 Array = NDArray[np.float64]
 
@@ -129,8 +138,8 @@ def bode_plot(
         What the magnitude is, with its unit.
     """
     figure, axes = new_axes(2, 1, (6.2, 5.0), title, sharex=True)
-    for name, response in responses:
-        look = model_style(name) | {"label": model_label(name)}
+    for number, (name, response) in enumerate(responses):
+        look = series_style(name, number) | {"label": model_label(name)}
         axes[0, 0].loglog(frequency / (2 * np.pi), np.abs(response), **look)
         phase = np.degrees(np.unwrap(np.angle(response)))
         axes[1, 0].semilogx(frequency / (2 * np.pi), phase, **look)

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from .regions import PlaneAxis, stability_plane
 from .style import MARKERS, RPM, axes_or_new, figure_of, model_label, model_style
 
 Array = NDArray[np.float64]
@@ -28,28 +27,17 @@ class EigenvalueCurve:
         [rad/s]
     eigenvalues : (n, k) complex array
         [1/s]
+    sense : (n, k) array or None
+        Sense of whirl: above 0 with the shaft, below 0 against it.
+    thresholds : sequence of (speed, whirl frequency)
+        Where the verdict changes [rad/s].
     """
 
     name: str
     speed: Array
     eigenvalues: NDArray[np.complex128]
-
-
-@dataclass(frozen=True)
-class _Region:
-    label: str
-    face: str
-    hatch: str
-    edge: str
-
-
-# From light to dark in this order also without colour; hatching marks what heating changes.
-_REGIONS = (
-    _Region("stable", "#e8f1f8", "", "none"),
-    _Region("stable if heating is neglected, unstable with it", "#f5b54a", "////", "#5a3800"),
-    _Region("unstable", "#8c4a5f", "", "none"),
-    _Region("unstable if heating is neglected, stable with it", "#7fc4a4", "\\\\\\\\", "#1d4d38"),
-)
+    sense: Array | None = None
+    thresholds: Sequence[tuple[float, float]] = ()
 
 
 def stability_map(
@@ -75,70 +63,16 @@ def stability_map(
     operating_point : (speed, mass), optional
         Marked by a star [rad/s, kg].
     """
-    ax = axes_or_new(ax, (6.6, 4.9))
-    hot = isothermal_decay if heated_decay is None else heated_decay
-    known = np.isfinite(isothermal_decay) & np.isfinite(hot)
-    rpm = speed * RPM
-    ax.set_facecolor("#bbbbbb")
-    # A region is where the least of its (signed) decay rates is positive: smooth borders.
-    signed = (
-        np.minimum(isothermal_decay, hot),
-        np.minimum(isothermal_decay, -hot),
-        np.minimum(-isothermal_decay, -hot),
-        np.minimum(-isothermal_decay, hot),
+    return stability_plane(
+        PlaneAxis("shaft speed [rpm]", speed * RPM),
+        PlaneAxis("rotor mass per bearing [kg]", mass),
+        isothermal_decay,
+        heated_decay,
+        None if operating_point is None else (operating_point[0] * RPM, operating_point[1]),
+        title,
+        ax,
+        border="critical mass",
     )
-    shown = []
-    for region, level in zip(_REGIONS, signed, strict=True):
-        if not np.any(level[known] > 0.0):
-            continue
-        values = np.ma.masked_invalid(level).T
-        top = max(float(values.max()), 1e-30)
-        filled = ax.contourf(rpm, mass, values, [0.0, top], colors=[region.face])
-        if region.hatch:
-            filled.set_hatch(region.hatch)
-            filled.set_edgecolor(region.edge)
-            filled.set_linewidth(0.0)
-        shown.append(Patch(fc=region.face, hatch=region.hatch, ec="#333333", label=region.label))
-    shown += _borders(ax, rpm, mass, isothermal_decay, heated_decay)
-    if not known.all():
-        shown.append(Patch(fc="#bbbbbb", ec="#333333", label="not computed"))
-    if operating_point is not None:
-        point = (operating_point[0] * RPM, operating_point[1])
-        ax.plot(*point, "*", color="k", mfc="w", ms=13, mew=1.2, zorder=5, clip_on=False)
-        shown.append(
-            Line2D([], [], ls="", marker="*", color="k", mfc="w", ms=11, label="operating point")
-        )
-    ax.set(xlabel="shaft speed [rpm]", ylabel="rotor mass per bearing [kg]", title=title)
-    ax.grid(visible=False)
-    figure = figure_of(ax)
-    if len(figure.axes) == 1:
-        figure.legend(handles=shown, loc="outside lower center", ncols=2)
-    else:
-        ax.legend(handles=shown, loc="upper right", fontsize=6.5)
-    return figure
-
-
-def _borders(
-    ax: Axes, rpm: Array, mass: Array, isothermal: Array, heated: Array | None
-) -> list[Line2D]:
-    handles = []
-    for name, decay in (("isothermal", isothermal), ("thd", heated)):
-        if decay is None or not (np.nanmin(decay) < 0.0 < np.nanmax(decay)):
-            continue
-        dashes = model_style(name)["linestyle"]
-        ax.contour(
-            rpm,
-            mass,
-            np.ma.masked_invalid(decay).T,
-            [0.0],
-            colors="k",
-            linestyles=[dashes],
-            linewidths=1.3,
-        )
-        handles.append(
-            Line2D([], [], color="k", ls=dashes, label=f"critical mass, {model_label(name)}")
-        )
-    return handles
 
 
 def eigenvalue_plot(
@@ -197,14 +131,135 @@ def campbell_diagram(
             unstable = np.where(curve.eigenvalues[:, k].real > 0.0, hertz[:, k], np.nan)
             grows = grows or bool(np.isfinite(unstable).any())
             ax.plot(rpm, unstable, color=look["color"], linewidth=4.5, alpha=0.45)
+        _mark_whirl(ax, curve, rpm, hertz)
     ends = np.array([0.0, max(float(curve.speed[-1]) for curve in curves)])
     for order in orders:
         ax.plot(ends * RPM, order * ends / (2 * np.pi), color="0.35", linewidth=0.8)
         place = (ends[1] * RPM, order * ends[1] / (2 * np.pi))
         ax.annotate(f"{order:g}x", place, xytext=(3, -3), textcoords="offset points", fontsize=8)
+    for marker, text, sign in _SENSES:
+        if any(c.sense is not None and np.any(sign * c.sense > _CLEAR) for c in curves):
+            ax.plot([], [], marker, color="k", mfc="w", ms=5, ls="", label=text)
+    if any(curve.thresholds for curve in curves):
+        ax.plot([], [], "x", color="k", ms=8, mew=2, ls="", label="threshold")
     if grows:
         ax.plot([], [], color="0.4", linewidth=4.5, alpha=0.45, label="grows (unstable)")
     ax.set(xlabel="shaft speed [rpm]", ylabel="damped frequency [Hz]", title=title)
     ax.set_ylim(bottom=0.0)
     ax.legend(loc="upper left")
     return figure_of(ax)
+
+
+_SENSES = (("^", "whirls forward", 1.0), ("v", "whirls backward", -1.0))
+_CLEAR = 0.1
+"""Ratio of areas, orbit to circle, above which an orbit has a sense."""
+
+
+def _mark_whirl(ax: Axes, curve: EigenvalueCurve, rpm: Array, hertz: Array) -> None:
+    """Triangles along the branches for the sense of whirl, crosses at the thresholds."""
+    colour = model_style(curve.name)["color"]
+    if curve.sense is not None:
+        step = max(1, rpm.size // 8)
+        shown = np.zeros(rpm.shape, dtype=bool)
+        shown[step // 2 :: step] = True
+        for marker, _, sign in _SENSES:
+            for k in range(hertz.shape[1]):
+                here = shown & (sign * curve.sense[:, k] > _CLEAR)
+                ax.plot(rpm[here], hertz[here, k], marker, color=colour, mfc="w", ms=5)
+    for speed, whirl in curve.thresholds:
+        ax.plot(speed * RPM, whirl / (2 * np.pi), "x", color="k", ms=8, mew=2, zorder=6)
+
+
+def root_locus(
+    parameter: Array,
+    eigenvalues: NDArray[np.complex128],
+    quantity: str,
+    title: str = "",
+    ax: Axes | None = None,
+) -> Figure:
+    """Eigenvalues over a parameter: open at its first value, filled at its last, numbers between.
+
+    Parameters
+    ----------
+    parameter : (n,) array
+        In the unit that `quantity` names.
+    eigenvalues : (n, k) complex array
+        Each column one continuous branch [1/s].
+    quantity : str
+        The parameter with its unit, for example ``"mass per bearing [kg]"``.
+    """
+    ax = axes_or_new(ax, (6.2, 4.8))
+    upper = eigenvalues.imag >= -1e-9 * np.abs(eigenvalues)
+    values = np.asarray(np.where(upper, eigenvalues, np.nan), dtype=complex)
+    known: NDArray[np.complex128] = values[np.isfinite(values)]
+    highest = max(float(known.imag.max(initial=0.0)), 1e-3)
+    low, high = _window(values, highest)
+    ax.axvspan(0.0, high, color="#f2d7d9", zorder=0)
+    ax.axvline(0.0, color="#8c1d2f", linewidth=1.0)
+    ax.annotate(
+        "unstable", (high, 0.0), xytext=(-4, 6), textcoords="offset points", ha="right",
+        color="#8c1d2f", rotation=90,
+    )  # fmt: skip
+    for k, branch in enumerate(values.T):
+        ax.plot(branch.real, branch.imag, color="#0072B2", zorder=2)
+        for index, face in ((0, "w"), (-1, "#0072B2")):
+            if np.isfinite(branch[index]):
+                point = complex(branch[index])
+                ax.plot(point.real, point.imag, "o", color="#0072B2", mfc=face, ms=5, zorder=3)
+        _number_branch(ax, parameter, branch, (low, high), 0.06 * highest, k)
+    first, last = f"{parameter[0]:.4g}", f"{parameter[-1]:.4g}"
+    ax.set_xlim(low, high)
+    ax.set_ylim(-0.02 * highest, 1.08 * highest)
+    ax.set(
+        xlabel="real part: growth rate [1/s]",
+        ylabel="imaginary part: damped frequency [rad/s]",
+        title=f"{title}\n{quantity} from {first} (open) to {last} (filled)".strip(),
+    )
+    return figure_of(ax)
+
+
+def _window(values: NDArray[np.complex128], highest: float) -> tuple[float, float]:
+    """Growth rates to show: those of the branch nearest to instability, well inside."""
+    rates = np.where(np.isfinite(values), values.real, -np.inf)
+    nearest = rates[:, int(np.argmax(rates.max(axis=0)))]
+    nearest = nearest[np.isfinite(nearest)]
+    left, right = min(float(nearest.min()), 0.0), max(float(nearest.max()), 0.0)
+    width = max(right - left, 0.05 * highest)
+    return left - 0.5 * width, right + 0.2 * width
+
+
+def _number_branch(
+    ax: Axes,
+    parameter: Array,
+    branch: NDArray[np.complex128],
+    limits: tuple[float, float],
+    spacing: float,
+    k: int,
+) -> None:
+    """Write values of the parameter along a branch, and where it crosses into instability."""
+    crossed = np.flatnonzero(np.sign(branch.real[:-1]) * np.sign(branch.real[1:]) < 0.0)
+    for i in crossed:
+        t = branch.real[i] / (branch.real[i] - branch.real[i + 1])
+        value = parameter[i] + t * (parameter[i + 1] - parameter[i])
+        height = branch.imag[i] + t * (branch.imag[i + 1] - branch.imag[i])
+        ax.plot(0.0, height, "x", color="k", ms=8, mew=2, zorder=4)
+        ax.annotate(
+            f"{value:.4g}", (0.0, height), xytext=(7, 4), textcoords="offset points", fontsize=8,
+            fontweight="bold",
+        )  # fmt: skip
+    last = None
+    for i in range(1, parameter.size - 1):
+        point = complex(branch[i])
+        if not (np.isfinite(point) and limits[0] < point.real < limits[1]):
+            continue
+        near_crossing = crossed.size and abs(point.real) < spacing
+        if near_crossing or (last is not None and abs(point - last) < 3.0 * spacing):
+            continue
+        if last is None and abs(point - branch[0]) < 2.0 * spacing:
+            continue
+        last = point
+        ax.plot(point.real, point.imag, ".", color="#0072B2", ms=5)
+        ax.annotate(
+            f"{parameter[i]:.3g}", (point.real, point.imag), xytext=(4, 3 if k % 2 == 0 else -9),
+            textcoords="offset points", fontsize=7, color="0.25",
+        )  # fmt: skip

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -53,6 +54,14 @@ def model_style(name: str) -> dict[str, Any]:
     if name in MODEL_STYLES:
         return MODEL_STYLES[name]
     return _OTHER_STYLES[sum(name.encode()) % len(_OTHER_STYLES)]
+
+
+def series_style(name: str, number: int) -> dict[str, Any]:
+    """Style of a thermal model, or for other series the `number`-th, unlike its neighbours."""
+    if name in MODEL_STYLES:
+        return MODEL_STYLES[name]
+    styles = (_OTHER_STYLES[2], MODEL_STYLES["thd"], *_OTHER_STYLES[:2])
+    return styles[number % len(styles)]
 
 
 def model_label(name: str) -> str:
@@ -114,9 +123,17 @@ def save_figure(
     written = []
     for suffix in formats:
         path = Path(f"{stem}.{suffix}")
-        # Without the date, the same figure gives the same file.
-        metadata = {"Date": None} if suffix == "svg" else None
-        with mpl.rc_context(SETTINGS), replacing(path) as temporary:
-            figure.savefig(temporary, format=suffix, dpi=dpi, metadata=metadata)
+        with replacing(path) as temporary:
+            temporary.write_bytes(figure_bytes(figure, suffix, dpi))
         written.append(path)
     return written
+
+
+def figure_bytes(figure: Figure, suffix: str = "svg", dpi: int = 150) -> bytes:
+    """Give what a file of the figure would hold."""
+    # Without the date, the same figure gives the same file.
+    metadata = {"Date": None} if suffix == "svg" else None
+    stream = io.BytesIO()
+    with mpl.rc_context(SETTINGS):
+        figure.savefig(stream, format=suffix, dpi=dpi, metadata=metadata)
+    return stream.getvalue()

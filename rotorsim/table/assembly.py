@@ -13,6 +13,7 @@ from ..errors import TableError
 from ..status import SolveStatus
 from .netcdf import scenario_digest
 from .variables import (
+    ATTRIBUTES,
     COEFFICIENTS,
     DIMENSIONS,
     SCALARS,
@@ -56,17 +57,28 @@ def from_points(points: Sequence[OperatingPoint], attributes: dict[str, Any]) ->
 
 
 def build(
-    coordinates: dict[str, Any], variables: dict[str, np.ndarray], attributes: dict[str, Any]
+    coordinates: dict[str, Any],
+    variables: dict[str, np.ndarray],
+    attributes: dict[str, Any],
+    like: xr.Dataset | None = None,
 ) -> xr.Dataset:
-    """Dataset with CF attributes from coordinates (in order) and arrays over all of them."""
+    """Dataset with CF attributes from coordinates (in order) and arrays over all of them.
+
+    Dimensions made by `stack` have the attributes that they have in `like`.
+    """
     import xarray as xr
+
+    def attributes_of(name: str) -> dict[str, str]:
+        if name not in ATTRIBUTES and like is not None:
+            return dict(like[name].attrs)
+        return cf_attributes(name)
 
     dimensions = tuple(coordinates)
     coords = {
         name: (
             name,
             _text(values) if name == "thermal_model" else np.asarray(values, dtype=float),
-            cf_attributes(name),
+            attributes_of(name),
         )
         for name, values in coordinates.items()
     }

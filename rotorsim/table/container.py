@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..errors import TableError
 from ..status import SolveStatus
@@ -168,6 +169,38 @@ class CoefficientTable:
                 )
             dataset = dataset.isel({name: [_position(dataset[name].values, wanted, name)]})
         return CoefficientTable(dataset)
+
+    def refine(self, dimension: str, values: ArrayLike) -> CoefficientTable:
+        """Interpolate K, C and the load at further values of a dimension other than the speed.
+
+        Parameters
+        ----------
+        dimension : str
+            With two values or more: ``radial_clearance``, or one made by `stack`.
+        values : (n,) array
+            Ascending, within the tabulated ones.
+
+        Raises
+        ------
+        OutOfRangeError
+            A value lies outside the table.
+        TableError
+            No such dimension, or only one value along it.
+
+        Notes
+        -----
+        A monotone cubic over the logarithm of the coordinate: for maps, which want many more
+        values than films should be solved for.
+        """
+        from .refinement import refine
+
+        numeric = [name for name in self.choices if name != "thermal_model"]
+        if dimension not in numeric:
+            raise TableError(f"must be one of {', '.join(numeric)}", key=dimension)
+        at = np.atleast_1d(np.asarray(values, dtype=float))
+        if at.ndim != 1 or not at.size or np.any(np.diff(at) <= 0.0):
+            raise TableError("values must ascend", key=dimension, value=values)
+        return CoefficientTable(refine(self.dataset, dimension, at))
 
     def interpolator(self, **choices: Any) -> CoefficientInterpolator:
         """Make a fast callable from speed [rad/s] to (K, C), for integrators and root searches.

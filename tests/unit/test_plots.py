@@ -148,3 +148,78 @@ def test_importing_plots_leaves_matplotlib_alone():
     subprocess.run([sys.executable, "-c", code], check=True)
     with pytest.raises(AttributeError, match="no_such_plot"):
         _ = plots.no_such_plot
+
+
+def grey(figure):
+    """Lightness of the figure's pixels as a printer without colour gives them."""
+    canvas = figure.canvas
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3] / 255.0
+    return pixels @ [0.299, 0.587, 0.114]
+
+
+def test_plane_of_any_two_inputs_has_its_regions_and_units():
+    load = np.linspace(5.0, 20.0, 30)
+    x = plots.PlaneAxis("load [kN]", load)
+    y = plots.PlaneAxis("supply temperature [°C]", np.linspace(30.0, 60.0, 20))
+    cold = 10.0 + 0 * y.values - (20.0 - load[:, None])
+    figure = plots.stability_plane(x, y, cold, cold - 3.0, operating_point=(15.0, 45.0))
+    (axes,) = figure.axes
+    assert axes.get_xlabel() == "load [kN]"
+    assert axes.get_ylabel() == "supply temperature [°C]"
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "stable if heating is neglected, unstable with it" in labels
+    assert "threshold, THD" in labels
+    # The three regions differ without colour: least at the left, most at the right.
+    shade = grey(figure)
+    height = shade.shape[0]
+
+    def lightness(xy):
+        column, row = axes.transData.transform(xy)
+        patch = shade[
+            height - int(row) - 3 : height - int(row) + 3, int(column) - 3 : int(column) + 3
+        ]
+        return float(patch.mean())
+
+    assert lightness((19.0, 33.0)) > 0.9
+    assert lightness((6.0, 33.0)) < 0.5
+    assert 0.4 < lightness((11.5, 33.0)) < 0.9
+
+
+def test_campbell_marks_senses_and_thresholds():
+    values = np.stack([-5 + 0.5j * SPEED, 300j - 4 + 0 * SPEED], axis=1)
+    sense = np.stack([np.ones(SPEED.size), -np.ones(SPEED.size)], axis=1)
+    curve = plots.EigenvalueCurve("thd", SPEED, values, sense, [(900.0, 450.0)])
+    (axes,) = plots.campbell_diagram([curve]).axes
+    labels = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert {"whirls forward", "whirls backward", "threshold"} <= set(labels)
+    crosses = [line for line in axes.lines if line.get_marker() == "x" and line.get_xdata().size]
+    assert crosses[0].get_xdata()[0] == pytest.approx(900.0 * 30 / np.pi)
+    assert crosses[0].get_ydata()[0] == pytest.approx(450.0 / (2 * np.pi))
+
+
+def test_root_locus_says_where_it_crosses():
+    mass = np.linspace(100.0, 300.0, 21)
+    branch = (mass - 205.0) + 400j
+    values = np.stack([branch, branch.conj()], axis=1)
+    (axes,) = plots.root_locus(mass, values, "mass per bearing [kg]").axes
+    assert "mass per bearing [kg] from 100 (open) to 300 (filled)" in axes.get_title()
+    assert "205" in [text.get_text() for text in axes.texts]
+    assert axes.get_ylim()[0] < 0.0 < 400.0 < axes.get_ylim()[1]
+
+
+def test_tolerance_histograms_show_shares_and_what_is_missing():
+    rng = np.random.default_rng(1)
+    speeds = 1000.0 + 50.0 * rng.standard_normal(256)
+    speeds[:64] = np.nan
+    figure = plots.tolerance_histograms(
+        speeds, 300.0 + 10.0 * rng.standard_normal(256),
+        {"radial_clearance": -0.8, "load": 0.4}, 1050.0, 310.0, (1000.0, 300.0),
+    )  # fmt: skip
+    first, second, third = figure.axes
+    assert first.get_title() == "25 % of samples have none"
+    assert sum(patch.get_height() for patch in first.patches) == pytest.approx(75.0)
+    assert sum(patch.get_height() for patch in second.patches) == pytest.approx(100.0)
+    assert [patch.get_width() for patch in third.patches] == [0.4, -0.8]
+    for axes in figure.axes:
+        assert "[" in axes.get_xlabel()

@@ -1,0 +1,221 @@
+"""Films over load, supply temperature and clearance; tolerances carried through the film."""
+
+import numpy as np
+import pytest
+
+from rotorsim.errors import InputError, ScenarioError
+from rotorsim.model import LoadTarget, MeshSize
+from rotorsim.pipeline.film_axes import changed, tabulate_over
+from rotorsim.pipeline.tolerances import study_tolerances, tolerances_of
+from rotorsim.scenario import Scenario
+from rotorsim.solver import solve_case
+from rotorsim.stability import rigid_threshold, stability_map, threshold_speeds
+
+TEXT = """
+title = "small"
+[bearing]
+journal_radius = "50 mm"
+length = "80 mm"
+radial_clearance = "100 um"
+[[bearing.groove]]
+center = "90 deg"
+extent = "20 deg"
+supply_temperature = "50 degC"
+[lubricant]
+viscosity = "0.0277 Pa*s"
+reference_temperature = "40 degC"
+viscosity_temperature_coefficient = "0.034 / delta_degC"
+density = "860 kg/m^3"
+specific_heat = "2000 J/(kg*delta_degC)"
+thermal_conductivity = "0.13 W/(m*delta_degC)"
+[film]
+mesh = { circumferential = 40, axial = 8, cross_film = 8 }
+[thermal]
+models = ["isothermal", "thd"]
+ambient_temperature = "40 degC"
+[operating]
+speed = ["6000 rpm", "9000 rpm", "12000 rpm", "15000 rpm"]
+load = "10 kN"
+[rotor]
+mass = "300 kg"
+"""
+TOLERANCES = """
+[tolerances]
+radial_clearance = "8 um"
+viscosity = "10 %"
+load = { spread = "2 %", distribution = "normal" }
+supply_temperature = "3 K"
+samples = 32
+"""
+PLAIN = TEXT.replace(TEXT[TEXT.index("[[bearing") : TEXT.index("[lubricant]")], "")
+
+
+@pytest.fixture(scope="module")
+def scenario():
+    return Scenario.from_text(TEXT)
+
+
+def test_inputs_change_what_they_name_and_nothing_else(scenario):
+    case = scenario.case(thermal_model="thd")
+    assert changed(case, {}) == case
+    assert changed(case, {"radial_clearance": 9e-5}).bearing.radial_clearance == 9e-5
+    assert changed(case, {"applied_load": 5e3}).target == LoadTarget(5e3)
+    warm = changed(case, {"supply_temperature": 330.0})
+    assert warm.thermal.supply_temperature == 330.0
+    assert warm.thermal.ambient_temperature == case.thermal.ambient_temperature
+    assert [g.supply_temperature for g in warm.bearing.grooves] == [None]
+    thick = changed(case, {"viscosity": 1.2})
+    for temperature in (300.0, 340.0):
+        ratio = thick.lubricant.viscosity(temperature) / case.lubricant.viscosity(temperature)
+        assert ratio == pytest.approx(1.2, rel=1e-12)
+    assert thick.lubricant.density == case.lubricant.density
+    for bad in ({"viscosity": 0.0}, {"speed": 1.0}, {"supply_temperature": 2000.0}):
+        with pytest.raises(InputError):
+            changed(case, bad)
+
+
+def test_viscosity_of_a_grade_is_scaled_at_every_temperature():
+    text = TEXT[: TEXT.index("viscosity =")] + "iso_vg = 46\n" + TEXT[TEXT.index("density") :]
+    case = Scenario.from_text(text).case(thermal_model="thd")
+    thin = changed(case, {"viscosity": 0.8}).lubricant
+    for temperature in (300.0, 360.0):
+        ratio = thin.viscosity(temperature) / case.lubricant.viscosity(temperature)
+        assert ratio == pytest.approx(0.8, rel=1e-12)
+
+
+def test_table_over_load_and_temperature_holds_the_films_solved_one_by_one():
+    scenario = Scenario.from_text(PLAIN)
+    loads, temperatures = [6e3, 12e3], [308.15, 318.15]
+    table = tabulate_over(
+        scenario, {"applied_load": loads, "supply_temperature": temperatures}, [700.0, 1100.0],
+        workers=1,
+    )  # fmt: skip
+    assert dict(table.dataset.sizes) == {
+        "thermal_model": 2, "radial_clearance": 1, "applied_load": 2, "supply_temperature": 2,
+        "speed": 2,
+    }  # fmt: skip
+    assert table.converged.all()
+    for load in loads:
+        for temperature in temperatures:
+            case = changed(
+                scenario.case(thermal_model="thd"),
+                {"applied_load": load, "supply_temperature": temperature},
+            )
+            alone, _ = solve_case(case, 1100.0)
+            found = table.at(
+                1100.0, thermal_model="thd", applied_load=load, supply_temperature=temperature
+            )
+            assert np.allclose(found.stiffness, alone.stiffness, rtol=1e-4)
+            assert found.load == pytest.approx(load, rel=1e-5)
+    chart = stability_map(table, [300.0]).plane("applied_load", "supply_temperature", speed=1100.0)
+    assert set(chart["verdict"].dims) == {"thermal_model", "applied_load", "supply_temperature"}
+    assert set(chart["destabilised_by_heating"].dims) == {"applied_load", "supply_temperature"}
+
+
+def test_clearance_may_be_any(scenario):
+    table = tabulate_over(
+        scenario, {"radial_clearance": [8e-5, 1.3e-4]}, [900.0],
+        thermal_models=["isothermal"], mesh=MeshSize(36, 6, 6, 4), workers=1,
+    )  # fmt: skip
+    assert table.dataset["radial_clearance"].values.tolist() == [8e-5, 1.3e-4]
+    assert "circumferential 36" in table.dataset.attrs["mesh"]
+    assert table.extra_dimensions == ()
+
+
+@pytest.mark.parametrize(
+    "axes", [{"speed": [1.0]}, {"applied_load": [2.0, 1.0]}, {"applied_load": []},
+             {"applied_load": [-1.0]}],
+)  # fmt: skip
+def test_bad_axes(scenario, axes):
+    with pytest.raises(InputError):
+        tabulate_over(scenario, axes)
+
+
+def test_tolerances_become_a_distribution():
+    scenario = Scenario.from_text(PLAIN + TOLERANCES)
+    found = study_tolerances(scenario, operating_speed=1385.0, workers=1)
+    outputs = found.samples.outputs
+    assert found.thermal_model == "thd"
+    assert found.samples.failures == ()
+    assert all(column.size == 32 for column in found.samples.inputs.values())
+    # Nominal values against the table's own way to a threshold.
+    (nominal,) = threshold_speeds(
+        tabulate_over(
+            scenario, {}, np.linspace(628.0, 1571.0, 9), thermal_models=["thd"], workers=1
+        ),
+        300.0,
+    )
+    assert found.nominal["threshold_speed"] == pytest.approx(nominal.speed, rel=3e-3)
+    point, _ = solve_case(scenario.case(thermal_model="thd"), 1385.0)
+    assert found.nominal["critical_mass"] == pytest.approx(point.critical_mass, rel=1e-3)
+    # A rotor is unstable where its mass is above the critical one, sample by sample.
+    unstable = outputs["decay_rate"] < 0.0
+    assert np.array_equal(unstable, outputs["critical_mass"] < 300.0)
+    assert found.probability_of_instability == pytest.approx(unstable.mean())
+    assert 0.0 < unstable.mean() < 1.0
+    assert np.array_equal(unstable, outputs["threshold_speed"] < 1385.0)
+    assert found.most_important == "radial_clearance"
+    assert found.importance["radial_clearance"] < -0.5  # wider is worse
+
+
+def test_thresholds_of_a_sample_are_those_of_its_film():
+    from rotorsim.pipeline.tolerances import FilmThreshold
+
+    scenario = Scenario.from_text(PLAIN)
+    case = scenario.case(thermal_model="thd")
+    function = FilmThreshold(case, 300.0, 1200.0, (700.0, 1000.0, 1300.0, 1600.0))
+    sample = {
+        "radial_clearance": 1.1e-4,
+        "viscosity": 0.9,
+        "load": 9e3,
+        "supply_temperature": 315.0,
+    }
+    found = function(sample)
+    same = changed(case, {"applied_load": 9e3, **{k: sample[k] for k in sample if k != "load"}})
+    there, _ = solve_case(same, found["threshold_speed"])
+    at = rigid_threshold(there.stiffness, there.damping, there.speed)
+    assert at.critical_mass == pytest.approx(300.0, rel=2e-3)
+
+
+def test_spreads_are_read_and_refused():
+    scenario = Scenario.from_text(PLAIN + TOLERANCES)
+    case = scenario.case(thermal_model="thd")
+    found = tolerances_of(case, scenario.tolerances)
+    assert found["load"].kind == "normal"
+    assert found["load"].spread == pytest.approx(200.0)
+    assert found["viscosity"].nominal == 1.0
+    assert found["supply_temperature"].spread == pytest.approx(3.0)
+    text = PLAIN + TOLERANCES.replace('"8 um"', '{ spread = "30 %", distribution = "normal" }')
+    with pytest.raises(InputError, match="below zero"):
+        tolerances_of(case, Scenario.from_text(text).tolerances)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"8 um"', '"8 kg"', ["tolerances.radial_clearance", "8 kg"]),
+        ('"8 um"', '"0 um"', ["tolerances.radial_clearance", "above 0"]),
+        ('"8 um"', '"80 %"', ["tolerances.radial_clearance", "50 %"]),
+        ('"10 %"', '"1 Pa*s"', ["tolerances.viscosity", "10 %"]),
+        ('"3 K"', '"3 %"', ["tolerances.supply_temperature", "3 K"]),
+        ('"3 K"', '"3 degC"', ["tolerances.supply_temperature", "delta_degC"]),
+        ('"normal"', '"gauss"', ["tolerances.load", "uniform, normal"]),
+        ("samples = 32", "samples = 2", ["tolerances.samples", "8"]),
+        ("samples", "sample", ["tolerances.sample", "samples"]),
+        ("viscosity = ", "oil = ", ["tolerances.oil"]),
+    ],
+)  # fmt: skip
+def test_bad_tolerances_name_key_and_value(old, new, words):
+    assert old in TOLERANCES
+    with pytest.raises(ScenarioError) as caught:
+        Scenario.from_text(PLAIN + TOLERANCES.replace(old, new))
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_load_tolerance_needs_a_load():
+    text = PLAIN.replace('load = "10 kN"', "eccentricity_ratio = 0.5") + TOLERANCES
+    with pytest.raises(ScenarioError, match=r"operating\.load"):
+        Scenario.from_text(text)
+    with pytest.raises(ScenarioError, match="one input or more"):
+        Scenario.from_text(PLAIN + "[tolerances]\nsamples = 16\n")
