@@ -18,7 +18,7 @@ copyright = "The rotorsim developers, MIT license"
 version = release = rotorsim.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
-exclude_patterns = ["_build", "**/README.md"]
+exclude_patterns = ["_build", "_generated"]
 suppress_warnings = ["toc.empty_glob"]
 
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
@@ -39,3 +39,17 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_sourcelink = False
 html_copy_source = False
+
+
+def write_table_variables() -> None:
+    """What a coefficient table holds, from the program's own list."""
+    from rotorsim.table.variables import ATTRIBUTES
+
+    rows = [f"| `{name}` | {unit} | {text} |" for name, (unit, text) in ATTRIBUTES.items()]
+    target = HERE / "_generated" / "table_variables.md"
+    target.parent.mkdir(exist_ok=True)
+    head = ["| variable | units | meaning |", "| --- | --- | --- |"]
+    target.write_text("\n".join([*head, *rows, ""]), encoding="utf-8")
+
+
+write_table_variables()
