@@ -10,6 +10,7 @@ from .. import __version__
 from .file_commands import export, new, view
 from .film_commands import check, solve, table
 from .output import guarded
+from .reproduce_command import reproduce
 from .rotor_commands import orbit, stability
 from .run_command import run
 
@@ -43,5 +44,5 @@ def root(
     """
 
 
-for command in (run, check, solve, table, stability, orbit, view, export, new):
+for command in (run, check, solve, table, stability, orbit, view, export, new, reproduce):
     app.command()(guarded(command))
