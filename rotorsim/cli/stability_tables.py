@@ -89,11 +89,15 @@ def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
         )
         found = row["whirl_range"]
         if found is not None:
+            first, last, most = (
+                f"{found[key] * RPM:.0f}"
+                for key in ("first_speed", "last_speed", "strongest_speed")
+            )
+            size = f"{number(found['amplitude'] * 1e6, 3)} um"
+            pitch = f"{found['frequency'] * RPM / 60.0:.1f} Hz"
             notes.append(
-                f"{row['thermal_model']}: whirls from {found['first_speed'] * RPM:.0f} to "
-                f"{found['last_speed'] * RPM:.0f} rpm, most at "
-                f"{found['strongest_speed'] * RPM:.0f} rpm with "
-                f"{number(found['amplitude'] * 1e6, 3)} um at {found['frequency'] * RPM / 60:.1f} Hz"
+                f"{row['thermal_model']}: whirls from {first} to {last} rpm, most at {most} rpm: "
+                f"{size} at {pitch}"
             )
         notes += [f"{row['thermal_model']}: {row['message']}"] if row["message"] else []
     return [table, *notes]

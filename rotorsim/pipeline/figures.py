@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .recordings import eigenvalue_path, orbit_tracks
+from .orbit_pictures import orbit_figures
+from .recordings import eigenvalue_path
 from .stability import map_planes
 
 if TYPE_CHECKING:
@@ -48,19 +49,9 @@ def figures(results: Results) -> Iterator[tuple[str, Figure]]:
         yield "film", plots.film_maps(pictures, title)
         yield "film_profiles", plots.film_profiles(pictures, title)
     if results.orbits:
-        tracks = orbit_tracks(results.orbits)
-        shown = [
-            plots.OrbitPicture(
-                name=orbit.thermal_model,
-                title=track.heading,
-                x=orbit.x,
-                y=orbit.y,
-                radial_clearance=orbit.radial_clearance,
-                equilibrium=np.asarray(orbit.equilibrium),
-            )
-            for orbit, track in zip(results.orbits, tracks, strict=True)
-        ]
-        yield "orbits", plots.orbit_plot(shown, title)
+        settings = results.scenario.orbit
+        steady_only = settings is not None and settings.steady_only
+        yield from orbit_figures(results.orbits, title, steady_only)
 
 
 def speed_curves(results: Results) -> list[SpeedCurve]:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from ..errors import InputError, RotorsimError
-from ..scenario.settings import SpeedRamp
+from ..model.rotor import rigid_mass
+from ..scenario.settings import OrbitForce, SpeedRamp
 from . import orbits as orbit_steps
 from .stability import StabilityCurve, stability_curves
 from .summary import describe_orbit, expected_growth, heating_effect
@@ -62,9 +63,8 @@ class Results:
 
     @property
     def rotor_mass(self) -> float | None:
-        """Per bearing [kg]; None without a rotor."""
-        rotor = self.scenario.rotor
-        return None if rotor is None else rotor.mass
+        """Per bearing [kg]; None without a rotor, or with one that is not rigid."""
+        return rigid_mass(self.scenario.rotor)
 
     @property
     def shown_curves(self) -> list[StabilityCurve]:
@@ -113,7 +113,7 @@ def compute(
 ) -> Results:
     """Do everything that follows from the table; nothing is written."""
     attempt = Attempts(announce)
-    mass = None if scenario.rotor is None else scenario.rotor.mass
+    mass = rigid_mass(scenario.rotor)
     curves = attempt("critical mass and eigenvalues", lambda: stability_curves(table, mass), [])
     chart = attempt("stability map", lambda: map_of(scenario, table), None)
     orbits: list[Orbit] = []
@@ -121,7 +121,9 @@ def compute(
     if scenario.orbit is not None:
         settings, _ = orbit_steps.orbit_settings(scenario)
         ramped = isinstance(settings.speed, SpeedRamp)
-        for companion in (False, True):
+        # A nonlinear film is simulated as the scenario says and no further: it takes its time.
+        linear = settings.force is OrbitForce.LINEAR
+        for companion in (False, True) if linear else (False,):
             for model in scenario.thermal_models:
                 kind = "changing" if ramped != companion else "constant"
                 label = f"orbit at {kind} speed, {model.value}"
@@ -148,13 +150,9 @@ def compute(
 
 def one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion: bool) -> Orbit:
     """The scenario's orbit with one thermal model, or its companion (see `companion_schedule`)."""
-    from ..orbit import simulate
-
     settings, _ = orbit_steps.orbit_settings(scenario)
     schedule = orbit_steps.companion_schedule(settings, table) if companion else None
-    return simulate(
-        orbit_steps.orbit_problem(scenario, table, thermal_model=model, schedule=schedule)
-    )
+    return orbit_steps.simulate_orbit(scenario, table, thermal_model=model, schedule=schedule)
 
 
 def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
@@ -171,8 +169,9 @@ def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
     speeds = speeds if len(table.speeds) > 1 else table.speeds
     if settings is not None and settings.mass:
         return stability_map(table, np.asarray(settings.mass), speeds)
-    if scenario.rotor is not None:
-        middle = scenario.rotor.mass
+    mass = rigid_mass(scenario.rotor)
+    if mass is not None:
+        middle = mass
     else:
         top = rigid_thresholds(
             table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]

@@ -10,8 +10,12 @@ import numpy as np
 
 if TYPE_CHECKING:
     from ..orbit import Orbit
-    from ..recording import EigenvaluePath, OrbitTrack
+    from ..recording import CascadePicture, EigenvaluePath, OrbitTrack
     from .stability import StabilityCurve
+
+
+CASCADE_LINES = 400
+"""Frequencies of a cascade, up to twice the highest shaft speed."""
 
 
 def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "Orbits") -> Path:
@@ -33,8 +37,44 @@ def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "O
     from ..recording import RecordingContents, write_recording
 
     several = [orbits] if isinstance(orbits, Orbit) else list(orbits)
-    contents = RecordingContents(title=title, orbits=tuple(orbit_tracks(several)))
+    contents = RecordingContents(
+        title=title,
+        summary=orbit_notes(several),
+        orbits=tuple(orbit_tracks(several)),
+        cascades=tuple(cascade_pictures(several)),
+    )
     return write_recording(path, contents)
+
+
+def orbit_notes(orbits: Sequence[Orbit]) -> str:
+    """How each run ended and what its film force takes for granted, as Markdown."""
+    return "\n".join(
+        f"- {track.heading}: {orbit.status.value.replace('_', ' ')}"
+        + (f" ({orbit.message})" if orbit.message else "")
+        for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True)
+    )
+
+
+def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
+    """Spectra over speed of each run through the speeds, on one axis of frequencies."""
+    from ..errors import InputError
+    from ..orbit import cascade
+    from ..recording import CascadePicture
+
+    pictures = []
+    for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
+        if np.ptp(orbit.speed) <= 1e-9 * abs(orbit.speed[0]):
+            continue
+        try:
+            rows = cascade(orbit)
+        except InputError:  # too short a run for one spectrum
+            continue
+        order = np.argsort(rows.speed)
+        frequency = np.linspace(0.0, 2.0 * float(rows.speed.max()), CASCADE_LINES)
+        known = zip(rows.frequency[order], rows.amplitude[order], strict=True)
+        amplitude = np.array([np.interp(frequency, f, a, right=0.0) for f, a in known])
+        pictures.append(CascadePicture(track.heading, rows.speed[order], frequency, amplitude))
+    return pictures
 
 
 def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ..operating_point import OperatingPoint
-    from ..orbit import Orbit
+    from ..orbit import Ellipse, Orbit
     from ..table import CoefficientTable
     from .stability import StabilityCurve
 
@@ -18,9 +19,22 @@ _EXPECTED_TOLERANCE = 1e-9
 
 
 def describe_orbit(orbit: Orbit) -> dict[str, Any]:
-    """Run and outcome of one orbit: status, extent, growth rate where the speed is constant."""
+    """Run and outcome of one orbit: status, extent, growth, whirl (SI).
+
+    ``growth_rate`` is that of small motions at the start. ``amplitude``, ``whirl`` (ellipse at the
+    whirl's frequency) and ``synchronous`` (at the shaft's) are those of the steady part; without
+    one, ``amplitude`` is that of the whole run. ``whirl_range`` says where a run through the speeds
+    whirls.
+    """
+    from ..orbit import analyse
+
     constant = bool(np.ptp(orbit.speed) <= _EXPECTED_TOLERANCE * abs(orbit.speed[0]))
-    growth = _growth(orbit) if constant else None
+    found = analyse(orbit)
+    growth, recognised = found.growth, found.recognition
+    ratio = None if growth is None else growth.whirl_frequency_ratio
+    if recognised is not None and recognised.whirl_frequency_ratio is not None:
+        ratio = recognised.whirl_frequency_ratio
+    steady = None if recognised is None else recognised.steady_from
     return {
         "thermal_model": orbit.thermal_model,
         "kind": "constant speed" if constant else "run-up" if _rises(orbit) else "coast-down",
@@ -32,7 +46,18 @@ def describe_orbit(orbit: Orbit) -> dict[str, Any]:
         "message": orbit.message,
         "max_eccentricity_ratio": float(orbit.eccentricity_ratio.max()),
         "growth_rate": None if growth is None else growth.rate,
-        "whirl_frequency_ratio": None if growth is None else growth.whirl_frequency_ratio,
+        "whirl_frequency_ratio": ratio,
+        "orbit_kind": orbit.kind,
+        "force": orbit.force_model,
+        "note": orbit.note,
+        "steady_from": None if steady is None else float(orbit.t[min(steady, orbit.t.size - 1)]),
+        "period": None if recognised is None else recognised.period,
+        "amplitude": found.amplitude,
+        "whirl": _ellipse(found.whirl),
+        "synchronous": _ellipse(found.synchronous),
+        "min_film": found.min_film,
+        "min_film_time": found.min_film_time,
+        "whirl_range": None if found.whirl_range is None else asdict(found.whirl_range),
         "events": [
             {"name": event.name, "time": event.time, "x": event.x, "y": event.y}
             for event in orbit.events
@@ -44,14 +69,17 @@ def _rises(orbit: Orbit) -> bool:
     return bool(orbit.speed[-1] > orbit.speed[0])
 
 
-def _growth(orbit: Orbit) -> Any:
-    from ..errors import InputError
-    from ..orbit import growth_rate
-
-    try:
-        return growth_rate(orbit)
-    except InputError:  # ended too early to measure anything
+def _ellipse(ellipse: Ellipse | None) -> dict[str, Any] | None:
+    if ellipse is None:
         return None
+    return {
+        "order": ellipse.order,
+        "semi_major": ellipse.semi_major,
+        "semi_minor": abs(ellipse.semi_minor),
+        "inclination": ellipse.inclination,
+        "direction": "forward" if ellipse.semi_minor >= 0.0 else "backward",
+        "center": list(ellipse.center),
+    }
 
 
 def expected_growth(table: CoefficientTable, orbit: Orbit, mass: float) -> float | None:

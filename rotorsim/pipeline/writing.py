@@ -9,7 +9,7 @@ import numpy as np
 
 from .figures import write_figures
 from .main_job import Announce, Attempts, Results, summary
-from .recordings import eigenvalue_path, orbit_tracks
+from .recordings import cascade_pictures, eigenvalue_path, orbit_tracks
 from .stability import map_planes
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ def recording_contents(results: Results) -> RecordingContents:
         films=results.films,
         eigenvalues=tuple(path for path in paths if path is not None),
         maps=tuple(map_pictures(results)),
+        cascades=tuple(cascade_pictures(results.orbits)),
     )
 
 

@@ -38,7 +38,7 @@ def view_points(x: ArrayLike, y: ArrayLike) -> NDArray[np.float32]:
 def log_orbit(stream: rr.RecordingStream, track: OrbitTrack) -> None:
     """Write one track's orbit picture."""
     root = orbit_entity(track.name)
-    _log_surroundings(stream, root, track)
+    log_surroundings(stream, track)
     points = view_points(track.x, track.y)
     colour = model_colour(track.name)
     stream.log(
@@ -50,6 +50,12 @@ def log_orbit(stream: rr.RecordingStream, track: OrbitTrack) -> None:
         ),
         static=True,
     )
+    log_orbit_piece(stream, track)
+
+
+def log_orbit_piece(stream: rr.RecordingStream, track: OrbitTrack) -> None:
+    """Write what moves: trail, journal, film force. `track` may be a part of a run."""
+    root, points = orbit_entity(track.name), view_points(track.x, track.y)
     _send_trail(stream, f"{root}/trail_um", track, points)
     _send_journal(stream, f"{root}/journal_um", track, points)
     if track.force is not None:
@@ -111,7 +117,9 @@ def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DVie
     )
 
 
-def _log_surroundings(stream: rr.RecordingStream, root: str, track: OrbitTrack) -> None:
+def log_surroundings(stream: rr.RecordingStream, track: OrbitTrack) -> None:
+    """Write what stands still: clearance circle, axes, labels, static position."""
+    root = orbit_entity(track.name)
     clearance = track.radial_clearance * MICRO
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     circle = clearance * np.stack([np.cos(turn), np.sin(turn)], axis=-1)

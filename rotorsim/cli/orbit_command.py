@@ -1,0 +1,165 @@
+"""Orbits in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..errors import InputError
+from .film_commands import computed_table
+from .inputs import table_path
+from .options import ModelOption, ScenarioArgument, WorkersOption
+from .output import DONE, INCOMPLETE, Output
+from .progress import revolution_progress
+
+if TYPE_CHECKING:
+    from ..orbit import Orbit
+    from ..scenario import Scenario
+    from ..table import CoefficientTable
+
+
+def orbit(
+    output: Output,
+    scenario: ScenarioArgument,
+    table: Annotated[
+        Path | None,
+        typer.Option(
+            "--table", "-t", metavar="FILE", help="Use this table.", show_default="computed"
+        ),
+    ] = None,
+    model: ModelOption = None,
+    recording: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", metavar="FILE", help="The recording.", show_default="logs/NAME.rrd"
+        ),
+    ] = None,
+    figures: Annotated[
+        bool, typer.Option("--figures", help="Write figures/NAME/orbits.png and cascade.png too.")
+    ] = False,
+    gif: Annotated[
+        bool, typer.Option("--gif", help="Write the animation figures/NAME/orbit.gif too.")
+    ] = False,
+    mp4: Annotated[
+        bool, typer.Option("--mp4", help="Write it as orbit.mp4 (needs the program ffmpeg).")
+    ] = False,
+    steady: Annotated[
+        bool, typer.Option("--steady", help="Figures and animation without the transient.")
+    ] = False,
+    live: Annotated[
+        bool, typer.Option("--live", help="Show the run in the viewer while it is integrated.")
+    ] = False,
+    workers: WorkersOption = None,
+) -> int:
+    """Simulate the scenario's orbit in time and record it.
+
+    With force = "linear" in the scenario the coefficient table is used, with "film" the nonlinear
+    film itself.
+
+    Example: rotorsim orbit scenarios/orbit_limit_cycle.toml --gif
+    """
+    from ..pipeline import orbit_settings, record
+    from ..pipeline.orbit_pictures import write_animation, write_orbit_figures
+    from ..pipeline.summary import describe_orbit
+    from ..scenario import load_scenario
+
+    loaded = load_scenario(scenario)
+    settings, _ = orbit_settings(loaded)  # what is missing should be said before the work
+    _check_mp4(mp4)
+    coefficients = _coefficients(output, loaded, scenario, table, workers)
+    orbits = _simulate(output, loaded, coefficients, _models(loaded, coefficients, model), live)
+    folder = Path("figures") / scenario.stem
+    steady = steady or settings.steady_only
+    path = record(orbits, recording or Path("logs") / f"{scenario.stem}.rrd", title=loaded.title)
+    written = write_orbit_figures(orbits, folder, loaded.title, steady) if figures else []
+    for wanted, suffix in ((gif, ".gif"), (mp4, ".mp4")):
+        if wanted:
+            output.note(f"drawing orbit{suffix}")
+            target = folder / f"orbit{suffix}"
+            written.append(write_animation(orbits, target, loaded.title, steady))
+    rows = [describe_orbit(one) for one in orbits]
+    output.document({"recording": path, "figures": written, "orbits": rows})
+    if not (output.json or output.quiet):
+        from .stability_tables import orbit_details, orbit_table
+
+        output.show(orbit_table(rows), *orbit_details(rows))
+        output.show(*(str(file) for file in written))
+        output.show(f"recorded in {path}; look at it: rotorsim view {path}")
+    failed = [one for one in orbits if one.status.value == "integration_failed"]
+    for one in failed:
+        output.warn(f"orbit {one.thermal_model}: {one.message}")
+    return INCOMPLETE if failed else DONE
+
+
+def _check_mp4(wanted: bool) -> None:
+    from ..plots.animation import can_write_mp4
+
+    if wanted and not can_write_mp4():
+        raise InputError(
+            "needs the program ffmpeg, which is not installed; --gif needs nothing", key="--mp4"
+        )
+
+
+def _coefficients(
+    output: Output, loaded: Scenario, scenario: Path, table: Path | None, workers: int | None
+) -> CoefficientTable | None:
+    """Table for linear coefficients; a nonlinear film needs none."""
+    from ..interchange import read_table
+    from ..scenario import OrbitForce
+
+    if loaded.orbit is not None and loaded.orbit.force is not OrbitForce.LINEAR:
+        if table is not None:
+            raise InputError(
+                'has no use: the scenario\'s orbit has force = "film"', key="--table", value=table
+            )
+        return None
+    if table is not None:
+        return read_table(table)
+    return computed_table(output, loaded, table_path(scenario, Path()), workers)[1]
+
+
+def _models(
+    loaded: Scenario, coefficients: CoefficientTable | None, wanted: str | None
+) -> list[str]:
+    if wanted is not None:
+        return [wanted]
+    if coefficients is not None:
+        return [str(name) for name in coefficients.dataset["thermal_model"].values]
+    return [model.value for model in loaded.thermal_models]
+
+
+def _simulate(
+    output: Output,
+    loaded: Scenario,
+    coefficients: CoefficientTable | None,
+    models: Sequence[str],
+    live: bool,
+) -> list[Orbit]:
+    from ..pipeline import simulate_orbit
+    from ..pipeline.orbits import orbit_settings, scenario_schedule
+
+    total = scenario_schedule(orbit_settings(loaded)[0]).revolutions
+    orbits = []
+    with ExitStack() as stack:
+        show: Callable[[Orbit], None] | None = None
+        if live:
+            from ..pipeline.live import live_view
+
+            show = stack.enter_context(live_view(loaded.title))
+        for name in models:
+            with revolution_progress(output, f"orbit {name}", total) as progress:
+
+                def consume(piece: Orbit, progress: Callable[[float], None] = progress) -> None:
+                    if show is not None:
+                        show(piece)
+                    if piece.t.size:
+                        progress(float(piece.revolutions[-1]))
+
+                orbits.append(
+                    simulate_orbit(loaded, coefficients, thermal_model=name, consume=consume)
+                )
+    return orbits
