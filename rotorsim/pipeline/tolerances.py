@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model import Case, LoadTarget, MeshSize
+from ..stability.over_speed import RotorOnFilm
 from ..stability.uncertainty import Propagation, Tolerance, propagate
+from ..table import Coefficients
 from .film_axes import changed, with_mesh
+from .rotors import rotor_on_film
 
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
@@ -43,8 +46,7 @@ class FilmThreshold:
     Parameters
     ----------
     case : Case
-    mass : float
-        Rotor mass per bearing [kg].
+    rotor : RotorOnFilm
     operating_speed : float
         [rad/s]
     speeds : tuple of float
@@ -52,7 +54,7 @@ class FilmThreshold:
     """
 
     case: Case
-    mass: float
+    rotor: RotorOnFilm
     operating_speed: float
     speeds: tuple[float, ...]
 
@@ -69,7 +71,7 @@ class FilmThreshold:
         -------
         dict
             ``decay_rate`` at the operating speed [1/s], above 0 where stable; ``critical_mass``
-            there [kg] and ``whirl_frequency_ratio``, None without a threshold;
+            of a rigid rotor there [kg] and its ``whirl_frequency_ratio``, None without a threshold;
             ``threshold_speed`` [rad/s], the lowest at which the rotor loses its stability, None
             where none lies within the speeds; ``stable_throughout`` and ``unstable_throughout``,
             1 or 0.
@@ -80,7 +82,6 @@ class FilmThreshold:
             The film did not converge.
         """
         from ..stability.modes import find_thresholds
-        from ..stability.rates import decay_rates
 
         case = changed(self.case, {INPUTS[name]: value for name, value in sample.items()})
         points = self._along(case, sorted({*self.speeds, self.operating_speed}))
@@ -93,10 +94,10 @@ class FilmThreshold:
                 break
             points |= self._along(case, [lost])
             crossings = find_thresholds(self._matrix(points), sorted(points))
-        rates = [float(decay_rates(p.stiffness, p.damping, self.mass)) for p in points.values()]
+        rates = [self._growth(point) for point in points.values()]
         found = [c.speed for c in crossings if c.becomes_unstable]
         return {
-            "decay_rate": -float(decay_rates(at.stiffness, at.damping, self.mass)),
+            "decay_rate": -self._growth(at),
             "critical_mass": at.critical_mass,
             "whirl_frequency_ratio": at.whirl_frequency_ratio,
             "threshold_speed": found[0] if found else None,
@@ -116,11 +117,14 @@ class FilmThreshold:
             points[speed] = point
         return points
 
-    def _matrix(self, points: Mapping[float, OperatingPoint]) -> Callable[[float], Array]:
-        from ..stability.matrices import state_matrix
+    def _growth(self, point: OperatingPoint) -> float:
+        """Largest real part of the eigenvalues [1/s]."""
+        film = Coefficients(point.stiffness, point.damping, point.speed)
+        return float(np.linalg.eigvals(self.rotor.state_matrix(film)).real.max())
 
+    def _matrix(self, points: Mapping[float, OperatingPoint]) -> Callable[[float], Array]:
         curve = _interpolator(points)
-        return lambda omega: state_matrix(*curve(omega), self.mass)
+        return lambda omega: self.rotor.state_matrix(Coefficients(*curve(omega), omega))
 
 
 def _interpolator(points: Mapping[float, OperatingPoint]) -> CoefficientInterpolator:
@@ -141,8 +145,9 @@ class ToleranceStudy:
     thermal_model : str
     radial_clearance : float
         Nominal [m].
-    mass, operating_speed : float
-        [kg], [rad/s]
+    rotor : RotorOnFilm
+    operating_speed : float
+        [rad/s]
     tolerances : mapping of str to Tolerance
     nominal : mapping of str to float or None
         Outputs (see `FilmThreshold`) without any deviation.
@@ -157,7 +162,7 @@ class ToleranceStudy:
 
     thermal_model: str
     radial_clearance: float
-    mass: float
+    rotor: RotorOnFilm
     operating_speed: float
     tolerances: Mapping[str, Tolerance]
     nominal: Mapping[str, float | None]
@@ -177,7 +182,7 @@ def study_tolerances(
     scenario: Scenario,
     settings: ToleranceSettings | None = None,
     *,
-    mass: float | None = None,
+    rotor: RotorOnFilm | None = None,
     operating_speed: float | None = None,
     radial_clearance: float | None = None,
     thermal_model: str | None = None,
@@ -193,8 +198,8 @@ def study_tolerances(
     scenario : Scenario
     settings : ToleranceSettings, optional
         The scenario's ``[tolerances]`` by default.
-    mass : float, optional
-        Per bearing [kg]; the scenario's rotor by default.
+    rotor : RotorOnFilm, optional
+        The scenario's by default.
     operating_speed : float, optional
         [rad/s]; by default the orbit's where it is constant, else the highest.
     radial_clearance, thermal_model : optional
@@ -211,22 +216,22 @@ def study_tolerances(
     Raises
     ------
     InputError
-        No tolerances, no mass, or a spread that reaches below zero.
+        No tolerances, no rotor, or a spread that reaches below zero.
     """
     settings = settings or scenario.tolerances
     if settings is None:
         raise InputError(
             'is missing: write for example [tolerances] radial_clearance = "5 um"', key="tolerances"
         )
-    mass = mass if mass is not None else scenario.rotor.mass if scenario.rotor else None
-    if mass is None:
-        raise InputError("is missing: thresholds need a rotor's mass", key="rotor.mass")
+    rotor = rotor or rotor_on_film(scenario.rotor)
+    if rotor is None:
+        raise InputError("is missing: thresholds need a rotor", key="rotor")
     scenario = scenario if mesh is None else with_mesh(scenario, mesh)
     models = [str(model) for model in scenario.thermal_models]
     model = thermal_model or ("thd" if "thd" in models else models[0])
     case = scenario.case(radial_clearance, model)
     speed = operating_speed or _operating_speed(scenario)
-    function = FilmThreshold(case, mass, speed, _search_speeds(scenario, speed))
+    function = FilmThreshold(case, rotor, speed, _search_speeds(scenario, speed))
     tolerances = tolerances_of(case, settings)
     nominal = function({name: t.nominal for name, t in tolerances.items()})
     samples = propagate(
@@ -239,7 +244,7 @@ def study_tolerances(
     return ToleranceStudy(
         thermal_model=model,
         radial_clearance=case.bearing.radial_clearance,
-        mass=mass,
+        rotor=rotor,
         operating_speed=speed,
         tolerances=tolerances,
         nominal=nominal,

@@ -6,10 +6,10 @@ import pytest
 from rotorsim.errors import InputError, ScenarioError
 from rotorsim.model import LoadTarget, MeshSize
 from rotorsim.pipeline.film_axes import changed, tabulate_over
-from rotorsim.pipeline.tolerances import study_tolerances, tolerances_of
+from rotorsim.pipeline.tolerances import FilmThreshold, study_tolerances, tolerances_of
 from rotorsim.scenario import Scenario
 from rotorsim.solver import solve_case
-from rotorsim.stability import rigid_threshold, stability_map, threshold_speeds
+from rotorsim.stability import RigidShaft, rigid_threshold, stability_map, threshold_speeds
 
 TEXT = """
 title = "small"
@@ -159,11 +159,9 @@ def test_tolerances_become_a_distribution():
 
 
 def test_thresholds_of_a_sample_are_those_of_its_film():
-    from rotorsim.pipeline.tolerances import FilmThreshold
-
     scenario = Scenario.from_text(PLAIN)
     case = scenario.case(thermal_model="thd")
-    function = FilmThreshold(case, 300.0, 1200.0, (700.0, 1000.0, 1300.0, 1600.0))
+    function = FilmThreshold(case, RigidShaft(300.0), 1200.0, (700.0, 1000.0, 1300.0, 1600.0))
     sample = {
         "radial_clearance": 1.1e-4,
         "viscosity": 0.9,

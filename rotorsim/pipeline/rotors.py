@@ -1,0 +1,17 @@
+"""From a scenario's rotor to one that stands on a table's film."""
+
+from __future__ import annotations
+
+from ..model.rotor import JeffcottRotor, Rotor
+from ..stability.over_speed import JeffcottShaft, RigidShaft, RotorOnFilm
+
+
+def rotor_on_film(rotor: Rotor | None) -> RotorOnFilm | None:
+    """Rotor of a scenario for the linear analyses; None without one."""
+    if rotor is None:
+        return None
+    if isinstance(rotor, JeffcottRotor):
+        return JeffcottShaft(
+            rotor.disc_mass, rotor.shaft_stiffness, rotor.journal_mass, rotor.disc_damping
+        )
+    return RigidShaft(rotor.mass)
