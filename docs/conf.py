@@ -18,8 +18,7 @@ copyright = "The rotorsim developers, MIT license"
 version = release = rotorsim.__version__
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
-exclude_patterns = ["_build", "_generated"]
-suppress_warnings = ["toc.empty_glob"]
+exclude_patterns = ["_build", "_generated", "validation", "data"]
 
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
 myst_heading_anchors = 3

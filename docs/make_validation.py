@@ -1,7 +1,7 @@
 """Run the validation against published numbers; write its tables and figures into the site.
 
-``python docs/make_validation.py`` (about a minute) writes ``docs/validation/*.md`` and
-``docs/images/validation/*.png``. The same comparisons are tests (``tests/validation``), with bounds.
+``python docs/make_validation.py`` writes (a minute) ``docs/validation/*.md`` and
+``docs/images/validation/*.png``. ``tests/validation`` has the bounds.
 """
 
 from __future__ import annotations
@@ -91,7 +91,9 @@ def butenschoen() -> None:
         eps = [rows[k]["epsilon"] for k in chosen]
         for ax, at, name in ((axes[0], 0, "So"), (axes[1], 1, "beta_deg")):
             line = ax.plot(eps, [found[k][at] for k in chosen], label=f"B/D = {ratio:g}")
-            ax.plot(eps, [rows[k][name] for k in chosen], "o", mfc="none", color=line[0].get_color())
+            ax.plot(
+                eps, [rows[k][name] for k in chosen], "o", mfc="none", color=line[0].get_color()
+            )
     axes[0].set(yscale="log", xlabel="eccentricity ratio", ylabel="So")
     axes[1].set(xlabel="eccentricity ratio", ylabel="attitude angle [°]")
     axes[0].legend(title="lines: rotorsim, circles: table")

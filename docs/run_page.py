@@ -1,7 +1,7 @@
 """Execute a documentation page, as a reader would who types everything it shows.
 
-In a scratch folder and from top to bottom: a `python` block is run, all of a page in one namespace;
-the lines of a `console` block that begin with `$ rotorsim` are commands; a block with a caption is a
+In a scratch folder, top to bottom: `python` blocks are run, all of a page in one namespace;
+lines of `console` blocks that begin with `$ rotorsim` are commands; a block with a caption is a
 file of that name. What the page shows as output (the rest of a console block, or a `text` block
 right after python) is compared: words exactly, numbers to two parts in a hundred, `...` stands for
 anything. Figures that the page shows from `images/PAGE/` must be made by it.

@@ -33,5 +33,7 @@ def _block(latex: str) -> str:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register the renderer; ``html_math_renderer = "mathml"`` chooses it."""
-    app.add_html_math_renderer("mathml", inline_renderers=(inline, None), block_renderers=(display, None))
+    app.add_html_math_renderer(
+        "mathml", inline_renderers=(inline, None), block_renderers=(display, None)
+    )
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}
