@@ -167,7 +167,7 @@ def _walls(r: PaperResults) -> list[Block]:
             f"{row.friction_reduction:.0f}", f"{row.pressure_reduction:.0f}",
             shown(row.critical_mass), f"{row.mass_reduction:.0f}",
             f"{row.friction_power / 1e3:.1f}", f"{row.to_bush / 1e3:.2f}",
-            f"{row.to_shaft / 1e3:.2f}",
+            f"{row.to_shaft / 1e3:z.2f}",
         ]
         for row in wall_rows(r)
     ]  # fmt: skip

@@ -10,6 +10,7 @@ from .frames import best_orientation, score_frames
 from .paper import CLEARANCES, Walls, bush_cooling_area
 from .results import ISOTHERMAL, LIQUID, THD, WHOLE, PaperResults
 from .tables import HEADLINES, sensitivity, wall_rows, wall_superheat, wall_verdicts
+from .variants import DESIGN
 
 C100 = CLEARANCES[0]
 
@@ -48,8 +49,7 @@ def frame_remark(r: PaperResults) -> list[str]:
     first = "kxy is the highest", "kyx is negative", "kyy is the lowest positive one"
     signs = [s.frame.label for s in scores if all(s.statements[name] for name in first)]
     verdict = (
-        "So the statements do not contradict each other; they belong to axes that the paper does "
-        "not name"
+        "So the statements can hold together, in axes that the paper does not name"
         if anywhere.held == total
         else "So no choice of axes makes all of them hold together"
     )
@@ -80,6 +80,12 @@ def designer_remarks(r: PaperResults) -> list[str]:
         for walls in Walls
     }
     total = len(wall_verdicts(r))
+    design = {
+        key: cell.value
+        for row in sensitivity(r)
+        if row.variant.key == DESIGN
+        for key, cell in row.cells.items()
+    }
     counts = ", ".join(f"{n} with {WALL_NAMES[w]}" for w, n in agree.items())
     share = 100.0 * (cold.to_bush + cold.to_shaft) / cold.friction_power
     return [
@@ -103,9 +109,10 @@ def designer_remarks(r: PaperResults) -> list[str]:
         "by its own equations.",
         "A designer should take the bush with conduction and the shaft without net heat for an "
         "air-cooled bearing, and treat cold walls as the optimistic limit that only forced "
-        "cooling of bush and shaft comes near. Fresh oil at the inlet is optimistic in both; the "
-        "mixing inlet in the sensitivity table lowers force and critical mass further. The "
-        "isothermal numbers are no guide at these speeds.",
+        "cooling of bush and shaft comes near. Fresh oil at the inlet is optimistic in both: with "
+        f"recirculated oil mixed in, the film force falls by {design['force_reduction']:.0f} % and "
+        f"the critical mass to {design['mass']:.0f} kg. The isothermal numbers "
+        f"({isothermal:.0f} kg) are no guide at this speed.",
     ]
 
 

@@ -132,8 +132,10 @@ class PaperResults:
 
 
 def reduction(before: float, after: float) -> float:
-    """Fall from `before` to `after` in percent."""
-    return 100.0 * (1.0 - after / before) if before else float("nan")
+    """Fall from `before` to `after` in percent; NaN where `before` is zero but for rounding."""
+    if abs(before) <= 1e-9 * abs(after):
+        return math.nan
+    return 100.0 * (1.0 - after / before)
 
 
 def quantity(point: OperatingPoint, name: str) -> float:

@@ -65,6 +65,8 @@ def _friction(case: Case) -> Case:
 BASE = "base"
 DOUBLE_MESH = "mesh_double"
 LITERAL = "mesh_as_printed"
+DESIGN = "bush_conduction_free_shaft_mixing"
+"""What an air-cooled bearing without a supply groove of its own comes nearest to."""
 VARIANTS = (
     Variant(BASE, "base: the choices that give the paper's numbers", _same),
     Variant("mesh_half", "mesh halved in every direction", _mesh(0.5)),
@@ -90,6 +92,12 @@ VARIANTS = (
         "bush_conduction_free_shaft",
         "the same bush, shaft without net heat",
         _same,
+        Walls.CONDUCTION_SHAFT,
+    ),
+    Variant(
+        DESIGN,
+        "that bush and shaft, and the mixing inlet",
+        _inlet(InletModel.MIXING),
         Walls.CONDUCTION_SHAFT,
     ),
     Variant("insulated", "both walls insulated", _same, Walls.INSULATED),

@@ -41,7 +41,7 @@ from rotorsim.reproduce.paper import (
     bush_cooling_area,
     dal_case,
 )
-from rotorsim.reproduce.results import ISOTHERMAL, LIQUID, THD, WHOLE, PaperResults, Run
+from rotorsim.reproduce.results import ISOTHERMAL, LIQUID, THD, WHOLE, PaperResults, Run, reduction
 from rotorsim.reproduce.study import paper_study
 from rotorsim.reproduce.tables import with_walls
 from rotorsim.reproduce.variants import VARIANTS
@@ -194,6 +194,13 @@ def test_curve_evidence_on_curves_of_known_shape(made_up):
     assert made_up.at("kyx", ISOTHERMAL, 100e-6) == pytest.approx(-0.5e9)
     with pytest.raises(KeyError, match="1234"):
         made_up.at("load", THD, 100e-6, 1234.0)
+
+
+def test_no_reduction_of_nothing():
+    assert reduction(50.0, 40.0) == pytest.approx(20.0)
+    # Without rupture K_xx of an isothermal film is zero, but for rounding.
+    assert math.isnan(reduction(-1e-7, 1e9))
+    assert math.isnan(reduction(0.0, 0.0))
 
 
 def test_frames_turn_the_coefficients(made_up):
