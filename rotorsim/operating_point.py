@@ -154,3 +154,8 @@ class OperatingPoint:
     def converged(self) -> bool:
         """Whether the numbers may be used."""
         return self.status is SolveStatus.CONVERGED
+
+    def _repr_html_(self) -> str:
+        from .display import as_html
+
+        return as_html(self)

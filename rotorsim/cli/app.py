@@ -9,9 +9,11 @@ import typer
 from .. import __version__
 from .file_commands import export, new, view
 from .film_commands import check, solve, table
+from .orbit_command import orbit
 from .output import guarded
+from .report_command import report
 from .reproduce_command import reproduce
-from .rotor_commands import orbit, stability
+from .rotor_commands import stability
 from .run_command import run
 
 app = typer.Typer(
@@ -44,5 +46,5 @@ def root(
     """
 
 
-for command in (run, check, solve, table, stability, orbit, view, export, new, reproduce):
+for command in (run, check, solve, table, stability, orbit, report, view, export, new, reproduce):
     app.command()(guarded(command))

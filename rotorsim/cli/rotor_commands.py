@@ -1,4 +1,4 @@
-"""Commands from the table on: stability, orbit."""
+"""Commands from the table on: stability."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from ..errors import InputError
 from .film_commands import computed_table
 from .inputs import table_path, wanted_mass
 from .options import (
-    ModelOption,
-    ScenarioArgument,
     SchedulerOption,
     WorkersOption,
     file_or_shipped,
@@ -86,55 +84,6 @@ def stability(
     return INCOMPLETE if bad else DONE
 
 
-def orbit(
-    output: Output,
-    scenario: ScenarioArgument,
-    table: Annotated[
-        Path | None,
-        typer.Option(
-            "--table", "-t", metavar="FILE", help="Use this table.", show_default="computed"
-        ),
-    ] = None,
-    model: ModelOption = None,
-    recording: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="The recording.", show_default="logs/NAME.rrd"
-        ),
-    ] = None,
-    workers: WorkersOption = None,
-) -> int:
-    """Simulate the scenario's orbit in time and record it.
-
-    Example: rotorsim orbit scenarios/dal.toml --table coefficients/dal.nc
-    """
-    from ..interchange import read_table
-    from ..pipeline import orbit_settings, record, simulate_orbit
-    from ..scenario import load_scenario
-
-    loaded = load_scenario(scenario)
-    orbit_settings(loaded)  # what is missing should be said before the table is computed
-    if table is None:
-        _, coefficients = computed_table(output, loaded, table_path(scenario, Path()), workers)
-    else:
-        coefficients = read_table(table)
-    names = (
-        [model] if model else [str(name) for name in coefficients.dataset["thermal_model"].values]
-    )
-    orbits = [simulate_orbit(loaded, coefficients, thermal_model=name) for name in names]
-    path = record(orbits, recording or Path("logs") / f"{scenario.stem}.rrd", title=loaded.title)
-    rows = [orbit_summary(one) for one in orbits]
-    output.document({"recording": path, "orbits": rows})
-    if not (output.json or output.quiet):
-        from .stability_tables import orbit_table
-
-        output.show(orbit_table(rows), f"recorded in {path}; look at it: rotorsim view {path}")
-    failed = [one for one in orbits if one.status.value == "integration_failed"]
-    for one in failed:
-        output.warn(f"orbit {one.thermal_model}: {one.message}")
-    return INCOMPLETE if failed else DONE
-
-
 def _table_of(
     output: Output, source: Path, workers: int | None, scheduler: str | None
 ) -> tuple[Scenario | None, CoefficientTable]:
@@ -157,10 +106,3 @@ def _table_of(
     _, table = computed_table(output, scenario, path, workers, scheduler)
     output.note(f"the table is in {path}")
     return scenario, table
-
-
-def orbit_summary(orbit: object) -> dict[str, object]:
-    """What is said of an orbit in one line."""
-    from ..pipeline.summary import describe_orbit
-
-    return describe_orbit(orbit)  # type: ignore[arg-type]

@@ -22,7 +22,8 @@ class OrbitStatus(StrEnum):
     SETTLED = "settled"
     """Ran to its end, at rest there."""
     PERIODIC = "periodic"
-    """Ran to its end on a closed orbit locked to the shaft (its turns: see `recognise`)."""
+    """Ran to its end on a closed orbit locked to the shaft (its turns: see `recognise`), or to a
+    harmonic load."""
     LIMIT_CYCLE = "limit_cycle"
     """Ran to its end whirling with steady amplitude at a frequency of its own."""
     QUASI_PERIODIC = "quasi_periodic"
@@ -81,6 +82,8 @@ class Orbit:
     events : tuple of OrbitEvent
     forced : bool
         Whether unbalance or a load varied in time; if not, a steady whirl is the film's own.
+    forcing : tuple of float
+        Frequencies of harmonic loads and motions of the base [rad/s].
     kind : str
         What was simulated, for labels: ``free_decay``, ``run_up``, ...; may be empty.
     note : str
@@ -107,6 +110,7 @@ class Orbit:
     message: str = ""
     events: tuple[OrbitEvent, ...] = ()
     forced: bool = True
+    forcing: tuple[float, ...] = ()
     kind: str = ""
     note: str = ""
 
@@ -124,6 +128,11 @@ class Orbit:
     def eccentricity_ratio(self) -> Array:
         """Eccentricity over radial clearance [-]."""
         return self.eccentricity / self.radial_clearance
+
+    def _repr_html_(self) -> str:
+        from ..display import as_html
+
+        return as_html(self)
 
     def part(self, first: int, last: int | None = None, step: int = 1) -> Orbit:
         """Cut out samples first to last (excluded), every `step`-th, as an orbit of their own."""

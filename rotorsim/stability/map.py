@@ -75,6 +75,11 @@ class StabilityMap:
                 dataset = dataset.isel({name: 0})
         return dataset
 
+    def _repr_html_(self) -> str:
+        from ..display import as_html
+
+        return as_html(self)
+
     def save(self, path: str | Path) -> Path:
         """Write the map as netCDF 4."""
         from ..table.netcdf import write

@@ -110,6 +110,11 @@ class CoefficientTable:
         """Write a CSV file that `from_csv` reads back (without further dimensions)."""
         return delimited.write(self.dataset, path)
 
+    def _repr_html_(self) -> str:
+        from ..display import as_html
+
+        return as_html(self)
+
     @property
     def extra_dimensions(self) -> tuple[str, ...]:
         """Dimensions added by `stack`."""

@@ -17,7 +17,10 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 QUICK = ROOT / "scenarios" / "quick.toml"
-COMMANDS = ("run", "check", "solve", "table", "stability", "orbit", "view", "export", "new")
+COMMANDS = (
+    *("run", "check", "solve", "table", "stability", "orbit", "report", "view", "export", "new"),
+    "reproduce",
+)
 POINT_KEYS = (
     "status thermal_model cavitation speed radial_clearance eccentricity_ratio attitude_angle load "
     "sommerfeld_number max_pressure max_temperature mean_temperature friction_force power_loss "

@@ -1,0 +1,196 @@
+"""The report's pieces, and results that show themselves in notebooks."""
+
+from __future__ import annotations
+
+import datetime
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from rotorsim.operating_point import OperatingPoint
+from rotorsim.orbit import Orbit, OrbitStatus
+from rotorsim.pipeline.main_job import Results
+from rotorsim.pipeline.stability import stability_curves
+from rotorsim.report import html, report_page, write_report
+from rotorsim.report.results import log_decrement
+from rotorsim.scenario import Scenario
+from rotorsim.stability import stability_map
+from rotorsim.status import SolveStatus
+from rotorsim.sweep import as_table, sweep_points
+
+VOID = {"meta", "link", "img", "br", "hr"}
+TEXT = """
+title = "A <b>bearing</b> & more"
+[bearing]
+journal_radius = "50 mm"
+length = "80 mm"
+radial_clearance = "100 um"
+[lubricant]
+viscosity = "0.0277 Pa*s"
+[film]
+mesh = { circumferential = 32, axial = 8 }
+[operating]
+speed = ["3000 rpm", "9000 rpm", "12000 rpm"]
+eccentricity_ratio = 0.5
+[rotor]
+mass = "2000 kg"
+"""
+
+
+class Checker(HTMLParser):
+    """Elements that close as they opened, and what they refer to."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.links: list[str] = []
+        self.words: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        assert tag != "script"
+        self.links += [value for name, value in attrs if name in ("src", "href")]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+@pytest.fixture(scope="module")
+def scenario() -> Scenario:
+    return Scenario.from_text(TEXT)
+
+
+@pytest.fixture(scope="module")
+def points(scenario) -> list[OperatingPoint]:
+    return sweep_points(list(scenario.cases()), [float(s) for s in scenario.speeds], workers=1)
+
+
+@pytest.fixture(scope="module")
+def results(scenario, points) -> Results:
+    table = as_table(points, scenario)
+    curves = stability_curves(table, 2000.0)
+    chart = stability_map(table, np.linspace(100.0, 4000.0, 9))
+    return Results(scenario, table, tuple(points), tuple(curves), chart)
+
+
+def words_of(page: str) -> str:
+    return " ".join(" ".join(Checker(page).words).split())
+
+
+def test_the_page_is_whole_and_refers_to_nothing_outside(results, tmp_path):
+    path = write_report(results, tmp_path / "new" / "report.html")
+    page = path.read_text(encoding="utf-8")
+    checked = Checker(page)
+    assert checked.links
+    assert all(link.startswith("data:") for link in checked.links)
+    assert "http" not in re.sub(r'src="data:[^"]*"', "", page).replace("http-equiv", "")
+    assert "@media print" in page
+
+
+def test_the_page_says_what_was_computed(results, points):
+    date = datetime.datetime(2001, 2, 3, 4, 5, tzinfo=datetime.UTC)
+    said = words_of(report_page(results, date))
+    assert "2001-02-03 04:05 UTC" in said
+    assert results.scenario.sha256 in said
+    assert "A <b>bearing</b> & more" in said  # escaped: text, not an element
+    assert "radial clearance 100 µm" in said
+    assert "eccentricity ratio (given) 0.5" in said
+    assert f"{points[-1].load / 1e3:.4g}" in said
+    assert f"{points[-1].stiffness[0, 0] / 1e6:.4g}" in said
+    assert "Unstable at 12000 rpm with 2000 kg per bearing: isothermal" in said
+    assert "None: every point converged" in said
+
+
+def test_margins_follow_from_mass_and_critical_mass(results):
+    (curve,) = results.curves
+    critical = float(curve.critical_mass[-1])
+    assert critical < 2000.0
+    said = words_of(report_page(results))
+    assert f"{100.0 * (1.0 - 2000.0 / critical):.1f} %" in said
+    assert f"{curve.threshold_speeds[0] * 30.0 / np.pi:.0f}" in said
+
+
+def test_log_decrement_is_that_of_successive_swings(results):
+    (curve,) = results.curves
+    assert curve.eigenvalues is not None
+    slowest = curve.eigenvalues[-1, 0]
+    period = 2.0 * np.pi / abs(slowest.imag)
+    ratio = abs(np.exp(slowest * 0.3)) / abs(np.exp(slowest * (0.3 + period)))
+    assert log_decrement(curve) == pytest.approx(np.log(ratio))
+    still = replace(curve, eigenvalues=np.full((3, 4), -5.0 + 0.0j))
+    assert log_decrement(still) is None
+
+
+def test_stable_incomplete_and_unknown_are_told_apart(results, points, scenario):
+    table = results.table
+    light = replace(results, curves=tuple(stability_curves(table, 10.0)))
+    assert "Stable at 12000 rpm" in words_of(report_page(light))
+    alone = Scenario.from_text(TEXT.split("[rotor]")[0])
+    unladen = replace(results, scenario=alone, curves=tuple(stability_curves(table)))
+    assert "No rigid rotor given" in words_of(report_page(unladen))
+    lost = replace(
+        points[-1], status=SolveStatus.NOT_CONVERGED, message="try a finer mesh",
+        stiffness=np.full((2, 2), np.nan), damping=np.full((2, 2), np.nan),
+    )  # fmt: skip
+    gap = [*points[:-1], lost]
+    table = as_table(gap, scenario)
+    broken = Results(
+        scenario, table, tuple(gap), tuple(stability_curves(table, 2000.0)), problems=("map: no",)
+    )
+    said = words_of(report_page(broken))
+    assert "No verdict at 12000 rpm" in said
+    assert "1 of 3 points did not converge" in said
+    assert "try a finer mesh" in said
+    assert "map: no" in said
+    assert "nan" not in said
+
+
+def test_long_figures_become_pixels():
+    from rotorsim import plots
+
+    x = np.cos(np.linspace(0.0, 99.0, 40_000)) * 1e-5 * np.linspace(0.1, 1.0, 40_000)
+    noisy = x + 1e-6 * np.random.default_rng(1).normal(size=x.size)
+    few = [plots.OrbitPicture("thd", "", x[:50], noisy[:50], 1e-4)]
+    many = [plots.OrbitPicture("thd", "", x, noisy, 1e-4)]
+    assert "data:image/svg+xml" in html.figure(plots.orbit_plot(few), "a")
+    assert "data:image/png" in html.figure(plots.orbit_plot(many), "a")
+
+
+def orbit() -> Orbit:
+    t = np.linspace(0.0, 0.1, 1281)
+    angle = 2.0 * np.pi * 200.0 * t
+    x, y = 1e-5 * np.cos(angle), 1e-5 * np.sin(angle)
+    zero = np.zeros_like(t)
+    return Orbit(
+        t=t, x=x, y=y, vx=zero, vy=zero, speed=np.full_like(t, 400.0 * np.pi), angle=angle,
+        fx=zero, fy=zero, displacements=np.column_stack([x, y]), samples_per_revolution=64,
+        radial_clearance=1e-4, equilibrium=(0.0, 0.0), force_model="linear", thermal_model="thd",
+        min_film=1e-4 - np.hypot(x, y), status=OrbitStatus.COMPLETED,
+    )  # fmt: skip
+
+
+def test_results_show_themselves_in_notebooks(results, points):
+    shown = {
+        "point": points[0]._repr_html_(),
+        "table": results.table._repr_html_(),
+        "map": results.chart._repr_html_(),
+        "orbit": orbit()._repr_html_(),
+    }
+    said = {name: words_of(page) for name, page in shown.items()}
+    assert f"{points[0].load / 1e3:.4g} kN" in said["point"]
+    assert f"{points[0].stiffness[1, 0]:.5g}" in said["point"]
+    assert "3 of 3 points converged" in said["table"]
+    assert f"{points[0].damping[0, 0] / 1e3:.4g}" in said["table"]
+    assert shown["map"].count("data:image/png") == 1
+    assert shown["orbit"].count("data:image/png") == 1
+    assert "constant speed" in said["orbit"]
