@@ -49,7 +49,12 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def percent(found: float, listed: float) -> str:
     """Relative difference in per cent."""
-    return f"{100.0 * (found / listed - 1.0):+.2f}"
+    return apart(100.0 * found / listed, 100.0)
+
+
+def apart(found: float, listed: float, digits: int = 2) -> str:
+    """Difference, without a negative zero."""
+    return f"{round(found - listed, digits) + 0.0:+.{digits}f}"
 
 
 def write(name: str, text: str) -> None:
@@ -80,7 +85,7 @@ def butenschoen() -> None:
             (
                 f"{row['B_over_D']:g}", f"{row['epsilon']:g}", f"{row['So']:g}", f"{so:.4f}",
                 percent(so, row["So"]), f"{row['beta_deg']:g}", f"{attitude:.2f}",
-                f"{attitude - row['beta_deg']:+.2f}", percent(flow, row["Q_star"]),
+                apart(attitude, row["beta_deg"]), percent(flow, row["Q_star"]),
             )
         )  # fmt: skip
     head = ("B/D", "ε", "So", "computed", "%", "β °", "computed", "° apart", "side flow %")
@@ -117,7 +122,7 @@ def raimondi_boyd() -> None:
             (
                 f"{row['L_over_D']:g}", f"{row['eps']:g}", f"{row['S']:g}",
                 f"{point.sommerfeld_number:.4g}", percent(point.sommerfeld_number, row["S"]),
-                f"{math.degrees(point.attitude_angle) - row['phi_deg']:+.2f}",
+                apart(math.degrees(point.attitude_angle), row["phi_deg"]),
                 percent(friction, row["Rf_over_c"]),
                 percent(point.side_flow / (inflow * length), row["Qs_over_Q"]),
                 percent(pressure, row["P_over_pmax"]),
@@ -141,7 +146,7 @@ def lund_thomsen() -> None:
         lines.append(
             (
                 f"{row['eps']:g}", percent(point.sommerfeld_number, row["S"]),
-                f"{math.degrees(point.attitude_angle) - row['phi_deg']:+.2f}", worst,
+                apart(math.degrees(point.attitude_angle), row["phi_deg"]), worst,
                 f"{row[worst]:g}", f"{values[worst]:.3f}",
                 "stable" if math.isnan(row["mc"]) else f"{row['mc']:.2f}",
                 "stable" if mass is None else f"{mass:.2f}",
@@ -180,7 +185,7 @@ def ocvirk() -> None:
         lines.append(
             (
                 f"{row['eps']:g}", percent(short, row["Ss"]),
-                f"{math.degrees(point.attitude_angle) - row['phi_deg']:+.3f}",
+                apart(math.degrees(point.attitude_angle), row["phi_deg"], 3),
                 f"{100.0 * np.abs(stiffness - k).max() / np.abs(k).max():.2f}",
                 f"{100.0 * np.abs(damping - b).max() / np.abs(b).max():.2f}",
                 "stable" if math.isnan(row["mc"]) else f"{row['mc']:.3f}",
