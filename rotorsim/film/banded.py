@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
 
 from .kernels import kernel
 from .operator import FilmOperator
@@ -33,6 +32,7 @@ class FilmFactor:
     """Cholesky factor of the operator on the active cells; `solve` may be called repeatedly."""
 
     factor: Array
+    """One row for each column of the matrix: its diagonal and what lies below."""
     order: NDArray[np.int64]
     active: Flags
 
@@ -40,21 +40,9 @@ class FilmFactor:
         """Solve for (..., n, m) right-hand sides; inactive cells give 0."""
         n, m = self.active.shape
         flat = np.asarray(right, dtype=float).reshape(-1, n, m)
-        columns = np.where(self.active, flat, 0.0)[:, self.order, :]
-        packed = columns.reshape(flat.shape[0], -1).T
-        solved, info = _solver(self.factor, packed)
-        if info != 0:
-            raise SingularFilmError(f"band solve failed ({info})")
         result = np.zeros_like(flat)
-        result[:, self.order, :] = solved.T.reshape(flat.shape[0], -1, m)
+        _solve_band(self.factor, self.order, self.active, flat, result)
         return result.reshape(np.shape(right))
-
-
-_factorise, _triangular = get_lapack_funcs(("pbtrf", "pbtrs"), dtype=np.float64)
-
-
-def _solver(factor: Array, right: Array) -> tuple[Array, int]:
-    return _triangular(factor, right, lower=1)
 
 
 def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
@@ -63,14 +51,14 @@ def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
     n, m = active.shape
     width = (2 * m if folded else m) if order.size > 1 else m - 1
     width = min(width, order.size * m - 1)
-    band = np.zeros((width + 1, order.size * m), order="F")
+    band = np.zeros((order.size * m, width + 1))
     position = np.full(n, -1, dtype=np.int64)
     position[order] = np.arange(order.size)
     _fill_band(operator.conductance, operator.linked, active, order, position, band)
-    factor, info = _factorise(band, lower=1, overwrite_ab=1)
-    if info != 0:
-        raise SingularFilmError(f"the film's matrix is not positive definite (pivot {info})")
-    return FilmFactor(factor=factor, order=order, active=active)
+    pivot = _cholesky(band)
+    if pivot:
+        raise SingularFilmError(f"the film's matrix is not positive definite (pivot {pivot})")
+    return FilmFactor(factor=band, order=order, active=active)
 
 
 def column_order(linked: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
@@ -98,15 +86,67 @@ def _fill_band(conductance, linked, active, order, position, band):
         for j in range(m):
             column = c * m + j
             if not active[i, j]:
-                band[0, column] = 1.0
+                band[column, 0] = 1.0
                 continue
             diagonal = 0.0
             for face in range(4):
                 diagonal += conductance[face, i, j]
-            band[0, column] = diagonal
+            band[column, 0] = diagonal
             if j + 1 < m and linked[3, i, j] and active[i, j + 1]:
-                band[1, column] -= conductance[3, i, j]
+                band[column, 1] -= conductance[3, i, j]
             if linked[0, i, j] and active[before, j] and position[before] > c:
-                band[(position[before] - c) * m, column] -= conductance[0, i, j]
+                band[column, (position[before] - c) * m] -= conductance[0, i, j]
             if linked[1, i, j] and active[after, j] and position[after] > c:
-                band[(position[after] - c) * m, column] -= conductance[1, i, j]
+                band[column, (position[after] - c) * m] -= conductance[1, i, j]
+
+
+@kernel
+def _cholesky(band):
+    """Factor in place; 0, or the number of the pivot that is not positive.
+
+    Written out, since the library's routine splits such narrow bands among threads and then waits
+    for them longest of all where every core is at work.
+    """
+    size, width = band.shape[0], band.shape[1] - 1
+    for c in range(size):
+        column = band[c]
+        if not column[0] > 0.0:
+            return c + 1
+        root = np.sqrt(column[0])
+        column[0] = root
+        below = min(width, size - 1 - c)
+        for r in range(1, below + 1):
+            column[r] /= root
+        for j in range(1, below + 1):
+            factor = column[j]
+            if factor != 0.0:
+                target = band[c + j]
+                for r in range(j, below + 1):
+                    target[r - j] -= factor * column[r]
+    return 0
+
+
+@kernel
+def _solve_band(band, order, active, right, result):
+    size, width = band.shape[0], band.shape[1] - 1
+    m = active.shape[1]
+    x = np.empty(size)
+    for q in range(right.shape[0]):
+        for c in range(order.size):
+            for j in range(m):
+                x[c * m + j] = right[q, order[c], j] if active[order[c], j] else 0.0
+        for c in range(size):
+            value = x[c] / band[c, 0]
+            x[c] = value
+            if value != 0.0:
+                for r in range(1, min(width, size - 1 - c) + 1):
+                    x[c + r] -= value * band[c, r]
+        for c in range(size - 1, -1, -1):
+            value = x[c]
+            for r in range(1, min(width, size - 1 - c) + 1):
+                value -= x[c + r] * band[c, r]
+            x[c] = value / band[c, 0]
+        for c in range(order.size):
+            for j in range(m):
+                if active[order[c], j]:
+                    result[q, order[c], j] = x[c * m + j]

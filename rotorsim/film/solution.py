@@ -17,7 +17,14 @@ from .geometry import stations, thinnest_film
 from .layers import isoviscous_layers
 from .problem import FilmProblem, film_problem, film_state
 from .state import FilmState
-from .thd import TEMPERATURE_LIMITS, TOLERANCE, Heat, ThermalFilm, solve_thermal_film, uniform_heat
+from .thd import (
+    ROUGH_TOLERANCE,
+    TEMPERATURE_LIMITS,
+    Heat,
+    ThermalFilm,
+    solve_thermal_film,
+    uniform_heat,
+)
 
 Array = NDArray[np.float64]
 Position = tuple[float, float]
@@ -25,10 +32,10 @@ Search = PlainSearch | LoadSearch | AttitudeSearch
 
 FORCE_TOLERANCE = 1e-8
 """Relative force residual at which the position counts as found."""
-ROUGH_TOLERANCE = 0.02
-"""The same, and change of log viscosity, while the mesh still follows the position."""
 MAX_POSITION_STEPS = 60
-MAX_MESHES = 5
+FRAME_TOLERANCE = 1e-3
+"""Angle [rad] between a tilted plain film's frame and its line of centres."""
+MAX_MESHES = 8
 """Times that the mesh may be graded anew for the position found."""
 
 
@@ -128,35 +135,43 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
             warm = _cold_start(problem, (eps * clearance, 0.0), search)
             eps = min(warm.position[0] / clearance, 0.9)
             continue
-        film = _iterate(problem, (eps * clearance, 0.0), search, warm, rough=effort.rough)
+        film = _iterate(
+            problem, (eps * clearance, 0.0), search, warm,
+            lambda p, level=level: effort.proceed(graded_eccentricity(p[0] / clearance) == level),
+        )  # fmt: skip
         eps = film.state.position[0] / clearance
         warm = WarmStart(film.state.position, film.heat, film.state.solution.full)
-        settled = graded_eccentricity(eps) == level
-        if effort.ends(film, settled, search):
+        if effort.ends(film) or search.unreachable:
             return _conclude(problem, film, _load_line(film.state), search, effort.iterations)
 
 
 @dataclass
 class _Effort:
-    """First a rough solution on meshes that follow the position, then the real one."""
+    """Meshes follow the position as long as it is known roughly only; the last one is kept."""
 
-    rough: bool = True
+    settled: bool = False
     meshes: int = 0
     iterations: int = 0
+    asked: int = 0
 
-    def ends(self, film: _Iterate, settled: bool, search: Search) -> bool:
-        """Take note of one solution; whether it is the last."""
+    def proceed(self, settled: bool) -> bool:
+        """Whether to go on to the end on a mesh, `settled` if it is the position's own."""
         self.meshes += 1
+        self.settled = settled or self.meshes >= MAX_MESHES
+        return self.settled
+
+    def ends(self, film: _Iterate, *, moved: bool = False) -> bool:
+        """Whether this solution is the last: on its own mesh, or one that led nowhere."""
         self.iterations += film.iterations
-        if self.rough:
-            self.rough = not settled and self.meshes < MAX_MESHES
-            return search.unreachable
-        return settled or search.unreachable or not film.converged or self.meshes > 2 * MAX_MESHES
+        nowhere = self.meshes == self.asked
+        self.asked = self.meshes
+        again = moved and self.settled and self.meshes < MAX_MESHES
+        return nowhere or (self.settled and not again)
 
 
 def _cold_start(problem: FilmProblem, position: Position, search: Search) -> WarmStart:
     """Position of the isothermal film, for a thermal one to begin at."""
-    cold = _iterate_isothermal(problem, position, search, None, rough=True)
+    cold = _iterate_isothermal(problem, position, search, None, lambda _: False)
     position = cold.state.position if cold.converged else position
     return WarmStart(position, None, cold.state.solution.full)
 
@@ -188,12 +203,17 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
             warm = _cold_start(problem, local, search)
             position = _turned(warm.position, frame)
             continue
-        film = _iterate(problem, local, search, warm, rough=effort.rough)
+
+        def own_mesh(where: Position, bearing: Bearing = bearing, level: Position = level) -> bool:
+            turn = _frame_angle(case.bearing, where)
+            own = _graded_position(bearing, where) == level
+            return effort.proceed(own and abs(turn) < 10.0 * FRAME_TOLERANCE)
+
+        film = _iterate(problem, local, search, warm, own_mesh)
         position = _turned(film.state.position, frame)
         warm = WarmStart(position, film.heat, film.state.solution.full)
-        settled = _graded_position(bearing, film.state.position) == level
-        settled = settled and abs(_frame_angle(case.bearing, position) - frame) < 1e-3
-        if effort.ends(film, settled, search):
+        turn = _frame_angle(case.bearing, film.state.position)
+        if effort.ends(film, moved=abs(turn) > FRAME_TOLERANCE) or search.unreachable:
             return _conclude(problem, film, frame, search, effort.iterations)
 
 
@@ -257,11 +277,10 @@ def _iterate(
     position: Position,
     search: Search | None,
     initial: WarmStart | None,
-    *,
-    rough: bool = False,
+    proceed: Callable[[Position], bool] | None = None,
 ) -> _Iterate:
     if not problem.is_thermal:
-        return _iterate_isothermal(problem, position, search, initial, rough=rough)
+        return _iterate_isothermal(problem, position, search, initial, proceed)
     shape = (*problem.mesh.shape, problem.settings.mesh.cross_film)
     heat = initial.heat if initial else None
     if heat is None or heat.temperature.shape != shape:
@@ -271,8 +290,8 @@ def _iterate(
         position,
         initial=heat,
         move=search,
-        force_tolerance=ROUGH_TOLERANCE if rough else FORCE_TOLERANCE,
-        tolerance=ROUGH_TOLERANCE if rough else TOLERANCE,
+        force_tolerance=10.0 * FORCE_TOLERANCE,
+        proceed=proceed,
     )
     return _Iterate(film.state, film, film.converged, film.iterations, film.residual)
 
@@ -282,14 +301,12 @@ def _iterate_isothermal(
     position: Position,
     search: Search | None,
     initial: WarmStart | None,
-    *,
-    rough: bool = False,
+    proceed: Callable[[Position], bool] | None = None,
 ) -> _Iterate:
     """The film at the supply temperature's viscosity."""
     viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
     layers = isoviscous_layers(problem.mesh.shape, viscosity)
     full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
-    tolerance = ROUGH_TOLERANCE if rough else FORCE_TOLERANCE
     off, step, stuck = 0.0, 0, 0
     while True:
         step += 1
@@ -299,9 +316,13 @@ def _iterate_isothermal(
             return _Iterate(state, None, state.solution.converged, state.solution.steps, 0.0)
         position, off = search(state)
         stuck = stuck + 1 if search.unreachable else 0
-        if off < tolerance or stuck >= 4 or step == MAX_POSITION_STEPS:
+        if proceed is not None and off < ROUGH_TOLERANCE:
+            if not proceed(state.position):
+                return _Iterate(state, None, state.solution.converged, step, off)
+            proceed = None
+        if off < FORCE_TOLERANCE or stuck >= 4 or step == MAX_POSITION_STEPS:
             break
-    done = off < tolerance and state.solution.converged
+    done = off < FORCE_TOLERANCE and state.solution.converged
     return _Iterate(state, None, done, step, off)
 
 

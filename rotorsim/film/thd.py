@@ -8,6 +8,7 @@ may shift the journal between iterations, so that position and temperature conve
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -36,8 +37,14 @@ Position = tuple[float, float]
 TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
 MAX_ITERATIONS = 150
-FREEZE_AFTER = 30
-"""Iterations after which the cells' states, full or ruptured, are held (`solve_thermal_film`)."""
+FAR_RESIDUAL = 0.1
+"""Change of log viscosity above which the cells' states are guessed anew."""
+ROUGH_TOLERANCE = 0.02
+"""Change of log viscosity and relative force residual at which the solution is known roughly."""
+STAGNATION = 6
+"""Iterations over which the residual should at least halve."""
+FREEZE_AFTER = 12
+"""Iterations from which a stagnating film's cells are held full or ruptured, as they are."""
 VIOLATIONS_ALLOWED = 2e-3
 """Part of the cells that may break the rupture condition at the end because they were held."""
 UNREACHABLE_STEPS = 8
@@ -153,6 +160,7 @@ def solve_thermal_film(
     initial: Heat | None = None,
     move: Move | None = None,
     held: NDArray[np.bool_] | None = None,
+    proceed: Callable[[Position], bool] | None = None,
     force_tolerance: float = 1e-7,
     tolerance: float = TOLERANCE,
     max_iterations: int = MAX_ITERATIONS,
@@ -169,6 +177,9 @@ def solve_thermal_film(
         Gives the next position; called once an iteration.
     held : (n, m) bool array, optional
         The full cells, taken as given throughout.
+    proceed : callable, optional
+        Asked once, when the solution is known roughly, whether to go on from this position; if
+        not, the rough solution is returned, `converged` False.
 
     Notes
     -----
@@ -187,25 +198,32 @@ def solve_thermal_film(
     mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 3)
     release, stuck = FREEZE_AFTER, 0
     law, bush = problem.lubricant.law, _bush_of(problem)
-    full, frozen, leaving, history = None, held, None, []
+    guess, frozen, leaving, history = None, held, None, []
     while True:
         viscosity = law.viscosity(heat.temperature)
-        state = film_state(problem, position, layer_integrals(viscosity), start=full, frozen=frozen)
+        layers = layer_integrals(viscosity)
+        state = film_state(problem, position, layers, start=guess, frozen=frozen)
         full = state.solution.full
         energy = energy_problem(problem, state)
         inlet = inlet_temperatures(problem, energy, heat.temperature)
         mapped, leaving = _through_energy(problem, energy, viscosity, heat, inlet, bush, leaving)
         residual = _change(problem, mapped, heat)
         history.append(residual)
+        # While the heat still moves much, coarser meshes guess the full cells better than the past.
+        guess = full if residual < FAR_RESIDUAL else None
         target, off = (position, 0.0) if move is None else move(state)
         stuck = stuck + 1 if move is not None and move.unreachable else 0
-        done = residual < tolerance and off < force_tolerance
+        roughly = residual < ROUGH_TOLERANCE and off < ROUGH_TOLERANCE
+        stop = False
+        if proceed is not None and roughly:
+            stop, proceed = not proceed(state.position), None
+        done = residual < tolerance and off < force_tolerance and not stop
         if done and held is None and state.solution.violations > VIOLATIONS_ALLOWED * full.size:
             done, frozen, release = False, None, len(history) + FREEZE_AFTER
-        elif len(history) >= release and frozen is None:
+        elif frozen is None and len(history) >= release and _stagnates(history):
             frozen = full
         given_up = stuck >= UNREACHABLE_STEPS or not np.isfinite(residual)
-        if done or given_up or len(history) >= max_iterations:
+        if done or stop or given_up or len(history) >= max_iterations:
             return ThermalFilm(
                 state=state, heat=heat, viscosity=viscosity, energy=energy,
                 inlet_temperature=inlet, leaving_temperature=leaving, converged=done,
@@ -218,6 +236,12 @@ def solve_thermal_film(
             if allowed != following:
                 mixer.forget()
             position = allowed
+
+
+def _stagnates(history: list[float]) -> bool:
+    """Whether the last iterations brought little against the best before them."""
+    recent = history[-STAGNATION:]
+    return min(recent) > 0.5 * min(history[:-STAGNATION])
 
 
 def _change(problem: FilmProblem, mapped: Heat, heat: Heat) -> float:
