@@ -133,8 +133,10 @@ def plot(path: Path, curves: dict[str, dict[str, np.ndarray]]) -> None:
             if size.max() > 1e-4:
                 axes.loglog(FACTORS, np.maximum(size, 1e-4), style, ms=4, label=key)
         axes.loglog(FACTORS, [0.3 / f**2 for f in FACTORS], color="0.6", lw=1, label="second order")
+        axes.set_xticks(FACTORS, [f"{f:g}" for f in FACTORS])
+        axes.minorticks_off()
         axes.set(title=name, xlabel="mesh relative to 156 x 48 x 24", ylabel="error [%]")
-    axes.legend(fontsize=7)
+        axes.legend(fontsize=7)
     figure.savefig(path, dpi=110)
 
 
