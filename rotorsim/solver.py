@@ -167,9 +167,9 @@ def operating_point(
         threshold = rigid_threshold(
             stiffness, damping, speed, load=load, radial_clearance=clearance
         )
-    elif not finite:
+    elif not finite and status in _WITH_NUMBERS:
         status, message = SolveStatus.FAILED, message or "the solution is not finite"
-    mean_viscosity = float(case.lubricant.viscosity(mean))
+    mean_viscosity = float(case.lubricant.viscosity(mean)) if math.isfinite(mean) else None
     return OperatingPoint(
         status=status,
         message=message,
@@ -235,7 +235,8 @@ def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float
     film = ~state.operator.held
     weight = (state.thickness.center * state.operator.area * fraction * film)[:, :, None]
     temperature = thermal.heat.temperature
-    mean = float(np.sum(weight * temperature) / (np.sum(weight) * temperature.shape[2]))
+    total = float(np.sum(weight)) * temperature.shape[2]
+    mean = float(np.sum(weight * temperature)) / total if total > 0.0 else math.nan
     return float(temperature[film].max()), mean
 
 

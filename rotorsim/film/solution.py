@@ -331,7 +331,13 @@ def _conclude(
 ) -> FilmSolution:
     """Say how it ended."""
     status, message = SolveStatus.CONVERGED, ""
-    if search is not None and search.unreachable:
+    if not film.state.solution.pressure.max() > 0.0 or not film.state.solution.full.any():
+        status = SolveStatus.STARVED
+        message = (
+            "no film forms: the pressure is nowhere above zero. A mass-conserving film needs a "
+            'supply: a groove, or inception = "max_film"'
+        )
+    elif search is not None and search.unreachable:
         status = SolveStatus.NO_EQUILIBRIUM
         message = (
             "no journal position within the clearance carries the load (eccentricity ratios from "
@@ -339,8 +345,6 @@ def _conclude(
             f"{float(np.hypot(*film.state.force)):.4g} N at the last one tried; a heavier load "
             "needs more speed, viscosity or size, a lighter one less"
         )
-    elif not film.state.solution.pressure.max() > 0.0 or not film.state.solution.full.any():
-        status, message = SolveStatus.STARVED, "no film forms: the pressure is nowhere above zero"
     elif not film.converged:
         status = SolveStatus.NOT_CONVERGED
         message = (
