@@ -13,8 +13,8 @@ from .orbit_command import orbit
 from .output import guarded
 from .report_command import report
 from .reproduce_command import reproduce
-from .rotor_commands import stability
 from .run_command import run
+from .stability_command import stability
 
 app = typer.Typer(
     name="rotorsim",

@@ -131,12 +131,10 @@ def plane_of_scenario(
         scenario, axes, _solved_speeds(scenario, speeds), thermal_models=thermal_models, mesh=mesh,
         executor=executor, workers=workers, progress=progress,
     )  # fmt: skip
+    own = rigid_mass(scenario.rotor)
     mass = given.get("mass")
-    if mass is None and "mass" in (x, y):
-        mass = _default_masses(scenario, table)
-    elif mass is None:
-        own = rigid_mass(scenario.rotor)
-        mass = None if own is None else [own]
+    if mass is None and own is not None:
+        mass = _masses_about(own) if "mass" in (x, y) else [own]
     return plane_of_table(table, x, y, {"speed": speeds, "mass": mass}, cells=cells)
 
 
@@ -157,7 +155,8 @@ def plane_of_table(
     x, y : str
         ``speed``, ``mass`` or a dimension of the table.
     values : mapping
-        ``speed`` [rad/s] (the tabulated ones by default) and ``mass`` [kg].
+        ``speed`` [rad/s] (the tabulated ones by default) and ``mass`` [kg] (along an axis: up to
+        three times the median critical mass at the highest speed by default).
     held : mapping, optional
         Where the table's other dimensions are held.
     cells : int
@@ -172,6 +171,8 @@ def plane_of_table(
                 "is not in this table; give the scenario, which can solve it", key=name
             )
     mass = values.get("mass")
+    if mass is None and "mass" in (x, y):
+        mass = _masses_about(_median_critical_mass(table))
     if mass is None:
         raise InputError('is missing: a verdict needs it; give for example "900 kg"', key="mass")
     chosen = {name: value for name, value in (held or {}).items() if name in table.choices}
@@ -241,26 +242,29 @@ def _solved_speeds(scenario: Scenario, wanted: Array) -> list[float]:
     if not high > low:
         return [low]
     own = scenario.speeds
+    if np.array_equal(wanted, own):
+        return [float(speed) for speed in own]
     inside = own[(own > low) & (own < high)]
     if own[0] <= low and own[-1] >= high and inside.size >= 3:
         return sorted({low, high, *(float(speed) for speed in inside)})
     return [float(speed) for speed in np.geomspace(low, high, _SPEEDS)]
 
 
-def _default_masses(scenario: Scenario, table: CoefficientTable) -> Array:
-    """Up to three times the rotor's mass, or the median critical mass at the highest speed."""
+def _masses_about(middle: float) -> Array:
+    return np.linspace(0.05, 3.0, 60) * middle
+
+
+def _median_critical_mass(table: CoefficientTable) -> float:
+    """Of every curve at the highest speed [kg]."""
     from ..stability.whirl import rigid_thresholds
 
-    middle = rigid_mass(scenario.rotor)
-    if middle is None:
-        found = rigid_thresholds(
-            table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
-        ).critical_mass
-        known = found[np.isfinite(found)]
-        if not known.size:
-            raise InputError("needs values: no mass is critical here", key="mass")
-        middle = float(np.median(known))
-    return np.linspace(0.05, 3.0, 60) * middle
+    found = rigid_thresholds(
+        table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
+    ).critical_mass
+    known = found[np.isfinite(found)]
+    if not known.size:
+        raise InputError("needs values: no mass is critical here", key="mass")
+    return float(np.median(known))
 
 
 def _spread(values: Array, cells: int) -> Array:

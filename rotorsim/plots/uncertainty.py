@@ -24,7 +24,7 @@ def tolerance_histograms(
     critical_mass: Array,
     importance: Mapping[str, float],
     operating_speed: float,
-    mass: float,
+    mass: float | None = None,
     nominal: tuple[float | None, float | None] = (None, None),
     title: str = "",
 ) -> Figure:
@@ -39,7 +39,7 @@ def tolerance_histograms(
     importance : mapping of str to float
         Rank correlations with the decay rate at the operating speed.
     operating_speed, mass : float
-        Marked [rad/s], [kg].
+        Marked [rad/s], [kg]; without a mass, a flexible rotor's is not.
     nominal : (threshold speed, critical mass)
         Without deviations, marked where not None.
     """
@@ -65,17 +65,21 @@ def tolerance_histograms(
     return figure
 
 
-def _histogram(ax: Axes, values: Array, mark: float, name: str, nominal: float | None) -> None:
+def _histogram(
+    ax: Axes, values: Array, mark: float | None, name: str, nominal: float | None
+) -> None:
     known = values[np.isfinite(values)]
     if known.size:
         edges = np.histogram_bin_edges(known, "auto")
         share = np.full(known.size, 100.0 / values.size)
-        ax.hist(known, edges, weights=share, color="#c9d8e4", edgecolor="k", linewidth=0.7)
+        ax.hist(known, edges.tolist(), weights=share, color="#c9d8e4", edgecolor="k", linewidth=0.7)
     missing = values.size - known.size
     if missing:
         ax.set_title(f"{100.0 * missing / values.size:.3g} % of samples have none")
-    ax.axvline(mark, color="#8c1d2f", linewidth=1.8, label=name)
+    if mark is not None:
+        ax.axvline(mark, color="#8c1d2f", linewidth=1.8, label=name)
     if nominal is not None:
         ax.axvline(nominal, color="k", linewidth=1.3, linestyle="--", label="nominal")
     ax.margins(y=0.3)
-    ax.legend(loc="upper right")
+    if mark is not None or nominal is not None:
+        ax.legend(loc="upper right")

@@ -276,6 +276,8 @@ def _position(values: np.ndarray, wanted: Any, name: str) -> int:
         except (TypeError, ValueError):
             distance = np.full(values.shape, np.inf)
         found = np.flatnonzero(distance <= _MATCH * np.abs(values))
+        if isinstance(wanted, float) and np.isnan(wanted):  # an unknown clearance
+            found = np.flatnonzero(np.isnan(values))
         found = found[np.argsort(distance[found])]
     else:
         found = np.flatnonzero(values.astype(str) == str(wanted))

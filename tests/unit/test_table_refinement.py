@@ -92,3 +92,11 @@ def test_bad_requests(stacked, dimension, values, error, words):
         values = stacked.dataset["radial_clearance"].values
     with pytest.raises(error, match=words):
         stacked.refine(dimension, values)
+
+
+def test_an_unknown_clearance_selects_an_unknown_one_and_no_other(tmp_path):
+    table = table_at(tmp_path / "t.csv", 1e3)
+    assert np.isnan(table.dataset["radial_clearance"].values).all()
+    assert table.select(radial_clearance=float("nan")).speeds.size == SPEEDS.size
+    with pytest.raises(TableError, match="radial_clearance"):
+        table.select(radial_clearance=1e-4)

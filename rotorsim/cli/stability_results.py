@@ -1,0 +1,255 @@
+"""Results of the stability analyses: as plain data and as tables."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .stability_tables import curve_title
+from .tables import KELVIN, RPM, grid, number
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.table import Table
+
+    from ..pipeline import StabilityCurve
+    from ..pipeline.campbell import Campbell
+    from ..pipeline.planes import Plane
+    from ..pipeline.tolerances import ToleranceStudy
+
+_QUANTILES = (0.05, 0.5, 0.95)
+_SHOWN = {
+    "speed": ("rpm", RPM, 0.0),
+    "mass": ("kg", 1.0, 0.0),
+    "radial_clearance": ("um", 1e6, 0.0),
+    "applied_load": ("kN", 1e-3, 0.0),
+    "supply_temperature": ("degC", 1.0, -KELVIN),
+}
+
+
+def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
+    """One curve for JSON."""
+    row = {
+        **curve.choices,
+        **{
+            field.name: getattr(curve, field.name)
+            for field in dataclasses.fields(curve)
+            if field.name not in ("choices", "mass")
+        },
+        "decay_rate": curve.decay_rate,
+    }
+    if modes is not None:
+        row["thresholds"] = [dataclasses.asdict(one) for one in modes.thresholds]
+        row["modes"] = modes.as_dict()
+        if curve.mass is None:
+            row["threshold_speeds"] = [one.speed for one in modes.thresholds]
+    return row
+
+
+def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
+    """The least stable oscillating mode over speed."""
+    from ..pipeline.campbell import whirl_word
+
+    head = ("rpm", "mode", "Hz", "f/rev", "damping ratio", "log decrement", "decay 1/s", "whirl")
+    table = grid(f"Least stable mode: {curve_title(curve)}", *head)
+    found = modes.branches
+    if not found.eigenvalues.shape[1]:
+        return table
+    for i, speed in enumerate(found.parameter):
+        k = int(np.argmax(found.eigenvalues[i].real))
+        frequency = float(found.damped_frequency[i, k])
+        table.add_row(
+            f"{speed * RPM:.0f}",
+            str(k + 1),
+            number(frequency / (2.0 * math.pi)),
+            number(frequency / float(speed), 3),
+            number(float(found.damping_ratio[i, k]), 3),
+            number(float(found.log_decrement[i, k]), 3),
+            number(-float(found.eigenvalues[i, k].real)),
+            whirl_word(float(modes.sense[i, k])),
+        )
+    return table
+
+
+def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
+    """Every branch at the highest speed."""
+    from ..pipeline.campbell import whirl_word
+
+    found = modes.branches
+    top = f"{found.parameter[-1] * RPM:.0f} rpm"
+    head = ("mode", "Hz", "f/rev", "damping ratio", "log decrement", "whirl")
+    table = grid(f"Modes at {top}: {curve_title(curve)}", *head)
+    for k in range(found.eigenvalues.shape[1]):
+        frequency = float(found.damped_frequency[-1, k])
+        table.add_row(
+            str(k + 1),
+            number(frequency / (2.0 * math.pi)),
+            number(frequency / float(found.parameter[-1]), 3),
+            number(float(found.damping_ratio[-1, k]), 3),
+            number(float(found.log_decrement[-1, k]), 3),
+            whirl_word(float(modes.sense[-1, k])),
+        )
+    return table
+
+
+def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell]) -> Table:
+    """Threshold speeds of all curves, with the whirl ratio at each."""
+    table = grid("Threshold speeds", "bearing", "rpm", "whirl Hz", "whirl ratio", "above it")
+    for curve, found in zip(curves, modes, strict=True):
+        if not found.thresholds:
+            known = found.growth[np.isfinite(found.growth)]
+            verdict = "stable throughout" if known.size and known.max() < 0.0 else "-"
+            verdict = "unstable throughout" if known.size and known.min() >= 0.0 else verdict
+            table.add_row(curve_title(curve), "none", "", "", verdict)
+        for one in found.thresholds:
+            table.add_row(
+                curve_title(curve),
+                f"{one.speed * RPM:.0f}",
+                number(one.whirl_frequency / (2.0 * math.pi)),
+                number(one.whirl_frequency_ratio, 3),
+                "unstable" if one.becomes_unstable else "stable",
+            )
+    return table
+
+
+def plane_document(plane: Plane) -> dict[str, Any]:
+    """A map for JSON; `decay_rate` above 0 is stable, as everywhere on the command line."""
+    names = ("mass_margin", "critical_mass", "whirl_frequency_ratio")
+    models = {
+        model: {
+            "decay_rate": plane.decay(model),
+            "verdict": plane.values("verdict", model),
+            **{
+                name: plane.values(name, model)
+                for name in names
+                if {plane.x, plane.y} <= set(plane.dataset[name].dims)
+            },
+        }
+        for model in plane.models
+    }
+    return {
+        "x": plane.x,
+        "y": plane.y,
+        "x_values": plane.dataset[plane.x].values,
+        "y_values": plane.dataset[plane.y].values,
+        "held": dict(plane.held),
+        "verdicts": {"stable": 1, "unstable": 0, "unknown": -1},
+        "models": models,
+        "destabilised_by_heating": plane.destabilised_by_heating,
+    }
+
+
+def plane_table(plane: Plane) -> list[RenderableType]:
+    """How much of the map is stable, and its border at some places."""
+    from ..pipeline.stability_figures import held_words
+
+    head = f"Stability over {_name(plane.x)} and {_name(plane.y)}"
+    held = held_words(dict(plane.held))
+    table = grid(head, "model", "stable", "unstable", "unknown")
+    for model in plane.models:
+        verdict = plane.values("verdict", model)
+        shares = [100.0 * float(np.mean(verdict == code)) for code in (1, 0, -1)]
+        table.add_row(model, *(f"{share:.1f} %" for share in shares))
+    heated = plane.destabilised_by_heating
+    if heated is not None:
+        table.add_row(
+            "made unstable by heating alone", "", f"{100.0 * float(heated.mean()):.1f} %", ""
+        )
+    return [table, *([f"held: {held}"] if held else []), _border_table(plane)]
+
+
+def _name(dimension: str) -> str:
+    return {"radial_clearance": "clearance", "applied_load": "load"}.get(
+        dimension, dimension.replace("_", " ")
+    )
+
+
+def _border_table(plane: Plane) -> Table:
+    """For some x: the y at which the verdict changes, by linear interpolation of the decay rate."""
+    (xu, xf, xo), (yu, yf, yo) = _SHOWN[plane.x], _SHOWN[plane.y]
+    x, y = (np.asarray(plane.dataset[name].values, dtype=float) for name in (plane.x, plane.y))
+    names = [f"{model}: {_name(plane.y)} {yu}" for model in plane.models]
+    table = grid("Border between stable and unstable", f"{_name(plane.x)} {xu}", *names)
+    for i in np.unique(np.linspace(0, x.size - 1, min(x.size, 8)).round().astype(int)):
+        cells = []
+        for model in plane.models:
+            decay = plane.decay(model)[i]
+            at = np.flatnonzero(decay[:-1] * decay[1:] < 0.0)
+            border = [y[j] + (y[j + 1] - y[j]) * decay[j] / (decay[j] - decay[j + 1]) for j in at]
+            known = decay[np.isfinite(decay)]
+            all_of_it = "stable" if known.size and known.min() > 0.0 else "unstable"
+            words = [_short(value * yf + yo) for value in border]
+            cells.append(", ".join(words) if words else all_of_it if known.size else "-")
+        table.add_row(_short(float(x[i]) * xf + xo), *cells)
+    return table
+
+
+def _short(value: float) -> str:
+    """Four digits, and all before the decimal point."""
+    return f"{value:.0f}" if abs(value) >= 1e3 else f"{value:.4g}"
+
+
+def study_document(study: ToleranceStudy) -> dict[str, Any]:
+    """A tolerance study for JSON."""
+    outputs = study.samples.outputs
+    return {
+        "thermal_model": study.thermal_model,
+        "radial_clearance": study.radial_clearance,
+        "operating_speed": study.operating_speed,
+        "tolerances": {name: dataclasses.asdict(one) for name, one in study.tolerances.items()},
+        "samples": next(iter(study.samples.inputs.values())).size,
+        "failed": [{"sample": i, "message": text} for i, text in study.samples.failures],
+        "nominal": dict(study.nominal),
+        "probability_of_instability": study.probability_of_instability,
+        "standard_error": study.standard_error,
+        "quantiles": {
+            name: dict(
+                zip(map(str, _QUANTILES), study.samples.quantile(name, _QUANTILES), strict=True)
+            )
+            for name in ("threshold_speed", "critical_mass", "decay_rate")
+        },
+        "stable_throughout": float(np.nanmean(outputs["stable_throughout"])),
+        "unstable_throughout": float(np.nanmean(outputs["unstable_throughout"])),
+        "most_important_input": study.most_important,
+        "rank_correlation": dict(study.importance),
+        "share_of_variance": dict(study.share_of_variance),
+        "inputs": dict(study.samples.inputs),
+        "outputs": dict(outputs),
+    }
+
+
+def study_tables(study: ToleranceStudy) -> list[RenderableType]:
+    """Distribution, probability, and what matters."""
+    title = (
+        f"Tolerances: {study.thermal_model}, c = {number(study.radial_clearance * 1e6)} um, "
+        f"{next(iter(study.samples.inputs.values())).size} samples"
+    )
+    table = grid(title, "", "nominal", *(f"{100 * q:.0f} %" for q in _QUANTILES))
+    rows = (
+        ("threshold speed rpm", "threshold_speed", RPM),
+        ("critical mass kg", "critical_mass", 1.0),
+        ("decay rate 1/s", "decay_rate", 1.0),
+    )
+    for text, name, factor in rows:
+        nominal = study.nominal[name]
+        found = [float(value) * factor for value in study.samples.quantile(name, _QUANTILES)]
+        first = None if nominal is None else nominal * factor
+        cells = ["-" if v is None or not math.isfinite(v) else _short(v) for v in (first, *found)]
+        table.add_row(text, *cells)
+    inputs = grid("What matters (for the decay rate)", "input", "rank correlation", "of variance")
+    for name, value in study.importance.items():
+        share = study.share_of_variance[name]
+        inputs.add_row(name.replace("_", " "), f"{value:+.2f}", f"{100.0 * share:.0f} %")
+    p, error = 100.0 * study.probability_of_instability, 100.0 * study.standard_error
+    outputs = study.samples.outputs
+    stable = 100.0 * float(np.nanmean(outputs["stable_throughout"]))
+    lines = [
+        f"probability of instability at {study.operating_speed * RPM:.0f} rpm: {p:.1f} % "
+        f"(+- {error:.1f} %)",
+        f"no threshold within the speeds: {stable:.1f} % of the samples are stable throughout",
+    ]
+    return [table, "\n".join(lines[: 2 if stable > 0.0 else 1]), inputs]

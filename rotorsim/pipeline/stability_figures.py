@@ -1,0 +1,116 @@
+"""Figures of the stability analyses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..stability.over_speed import RigidShaft
+from .planes import Plane
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from .campbell import Campbell
+    from .tolerances import ToleranceStudy
+
+_RPM = 30.0 / np.pi
+_AXES = {
+    "speed": ("shaft speed [rpm]", _RPM, 0.0),
+    "mass": ("rotor mass per bearing [kg]", 1.0, 0.0),
+    "radial_clearance": ("radial clearance [µm]", 1e6, 0.0),
+    "applied_load": ("load per bearing [kN]", 1e-3, 0.0),
+    "supply_temperature": ("supply temperature [°C]", 1.0, -273.15),
+}
+"""Label, factor and offset from SI to what a figure shows."""
+_WORDS = {
+    "speed": ("{:.0f} rpm", _RPM, 0.0),
+    "mass": ("{:.4g} kg per bearing", 1.0, 0.0),
+    "radial_clearance": ("c = {:.4g} µm", 1e6, 0.0),
+    "applied_load": ("{:.4g} kN", 1e-3, 0.0),
+    "supply_temperature": ("oil at {:.4g} °C", 1.0, -273.15),
+}
+
+
+def save_figures(
+    figures: Iterator[tuple[str, Figure]], folder: Path, formats: Sequence[str] = ("png", "svg")
+) -> list[Path]:
+    """Write named figures into `folder`."""
+    from ..plots import save_figure
+
+    return [
+        path
+        for name, figure in figures
+        for path in save_figure(figure, folder / name, formats=formats)
+    ]
+
+
+def held_words(held: dict[str, float]) -> str:
+    """``1200 kg per bearing, c = 100 µm``: what a plane holds."""
+    words = [_WORDS[name] for name in held]
+    return ", ".join(
+        text.format(value * factor + offset)
+        for (text, factor, offset), value in zip(words, held.values(), strict=True)
+    )
+
+
+def plane_figure(plane: Plane, title: str = "") -> Figure:
+    """Map of a plane: stable, unstable, and what only heating makes unstable."""
+    from ..plots import PlaneAxis, stability_plane
+
+    def axis(name: str) -> PlaneAxis:
+        label, factor, offset = _AXES[name]
+        values = np.asarray(plane.dataset[name].values, dtype=float)
+        return PlaneAxis(label, values * factor + offset)
+
+    models = plane.models
+    cold = "isothermal" if "isothermal" in models else models[0]
+    hot = "thd" if "thd" in models else models[-1]
+    heading = "\n".join(text for text in (title, held_words(dict(plane.held))) if text)
+    heated = plane.decay(hot) if hot != cold else None
+    return stability_plane(axis(plane.x), axis(plane.y), plane.decay(cold), heated, title=heading)
+
+
+def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tuple[str, Figure]]:
+    """One diagram for each clearance (and further dimension), all its thermal models in it."""
+    from ..plots import EigenvalueCurve, campbell_diagram
+
+    groups: dict[tuple, list[Campbell]] = {}
+    for curve in curves:
+        key = tuple((n, v) for n, v in curve.choices.items() if n != "thermal_model")
+        groups.setdefault(key, []).append(curve)
+    for number, (key, group) in enumerate(groups.items(), start=1):
+        shown = [
+            EigenvalueCurve(
+                str(curve.choices["thermal_model"]),
+                curve.branches.parameter,
+                curve.branches.eigenvalues,
+                curve.sense,
+                [(one.speed, one.whirl_frequency) for one in curve.thresholds],
+            )
+            for curve in group
+        ]
+        held = held_words({name: value for name, value in key if np.isfinite(value)})
+        heading = "\n".join(text for text in (title, held) if text)
+        name = "campbell" if len(groups) == 1 else f"campbell_{number}"
+        yield name, campbell_diagram(shown, title=heading)
+
+
+def tolerance_figure(study: ToleranceStudy, title: str = "") -> Figure:
+    """Histograms of threshold speed and critical mass, and what matters."""
+    from ..plots import tolerance_histograms
+
+    outputs = study.samples.outputs
+    mass = study.rotor.mass if isinstance(study.rotor, RigidShaft) else None
+    return tolerance_histograms(
+        outputs["threshold_speed"],
+        outputs["critical_mass"],
+        study.importance,
+        study.operating_speed,
+        mass,
+        (study.nominal["threshold_speed"], study.nominal["critical_mass"]),
+        title,
+    )
