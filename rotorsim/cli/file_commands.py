@@ -10,6 +10,7 @@ import typer
 
 from ..errors import InputError
 from ..shipped import shipped_scenarios
+from .inputs import check_file, check_folder
 from .options import TableArgument
 from .output import DONE, Output
 
@@ -76,10 +77,13 @@ def new(
     from ..scenario import Scenario
 
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if not path.name.removesuffix(".toml").strip("."):
+        raise InputError("needs a name", key="NAME", value=name)
     if path.exists() and not force:
         raise InputError("exists; choose another name, or replace it with --force", source=path)
+    check_file(path)
     if example is None:
-        text = _new_text(path.stem, profile or Profile.PLAIN, load, eccentricity, iso_vg or 32.0)
+        text = _new_text(path.stem, profile or Profile.PLAIN, load, eccentricity, iso_vg)
     elif (profile, load, eccentricity, iso_vg) == (None, None, None, None):
         text = _shipped_text(example)
     else:
@@ -96,14 +100,18 @@ def new(
 
 
 def _new_text(
-    title: str, profile: Profile, load: str | None, eccentricity: float | None, iso_vg: float
+    title: str, profile: Profile, load: str | None, eccentricity: float | None, iso_vg: float | None
 ) -> str:
     from .template import scenario_text
 
     if load is not None and eccentricity is not None:
         raise InputError("give a load or an eccentricity ratio, not both", key="--load")
-    target = ("load", load or "10 kN") if eccentricity is None else ("eccentricity", eccentricity)
-    return scenario_text(title, profile.value, target, iso_vg)
+    target = (
+        ("load", "10 kN" if load is None else load)
+        if eccentricity is None
+        else ("eccentricity", eccentricity)
+    )
+    return scenario_text(title, profile.value, target, 32.0 if iso_vg is None else iso_vg)
 
 
 def _shipped_text(name: str) -> str:
@@ -145,6 +153,7 @@ def export(
     loaded = read_table(table)
     name = table.stem.removesuffix(".ross")
     where = folder or table.parent
+    check_folder(where)
     for kind in kinds:
         if (where / f"{name}.{FORMATS[kind]}").resolve() == table.resolve():
             raise InputError(
@@ -166,6 +175,10 @@ def view(
     """
     from ..recording import open_viewer
 
+    if recording.is_file():
+        with recording.open("rb") as stream:
+            if stream.read(3) != b"RRF":
+                raise InputError("is no recording of rerun (.rrd)", source=recording)
     launch = open_viewer(recording)
     output.document({"started": launch.started, "message": launch.message})
     if launch.started:

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from .inputs import cluster, journal_path, table_path, wanted_cases, wanted_speeds
+from .inputs import (
+    check_file,
+    check_workers,
+    cluster,
+    journal_path,
+    table_path,
+    wanted_cases,
+    wanted_speeds,
+)
 from .options import (
     ClearanceOption,
     ModelOption,
@@ -94,6 +102,7 @@ def solve(
     cases = wanted_cases(loaded, clearance, model)
     speeds = wanted_speeds(loaded, speed)
     total = len(cases) * len(speeds)
+    check_workers(workers)
     if workers is None and total < MANY:
         workers = 1  # starting another process takes longer than the work
     with film_progress(output, total) as progress:
@@ -152,6 +161,8 @@ def computed_table(
     from ..sweep import as_table, sweep_points
     from .progress import film_progress
 
+    check_workers(workers)
+    check_file(path, ".nc")
     journal = journal_path(path)
     cases = list(scenario.cases())
     before = len(Journal(journal))

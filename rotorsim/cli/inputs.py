@@ -7,6 +7,7 @@ from concurrent.futures import Executor
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import TYPE_CHECKING
 
 from ..errors import InputError
@@ -50,6 +51,44 @@ def wanted_mass(mass: str | None) -> float | None:
     if value <= 0.0:
         raise InputError("must be above 0", key="--mass", value=mass)
     return value
+
+
+def check_workers(workers: int | None) -> None:
+    """Refuse a number of processes below 1."""
+    if workers is not None and workers < 1:
+        raise InputError("must be 1 or more", key="--workers", value=workers)
+
+
+def check_file(path: Path, suffix: str = "") -> None:
+    """Refuse, before any work is done, a file that could not be written.
+
+    Raises
+    ------
+    InputError
+        It is a directory or a device, ends otherwise than in `suffix`, or its folder cannot be
+        made or written to.
+    """
+    if path.is_dir() or not path.name:
+        raise InputError("is a directory; give a file", key="--output", value=str(path))
+    if path.suffix.lower() != suffix and suffix:
+        raise InputError(f"must end in {suffix}", key="--output", value=str(path))
+    if path.exists() and not path.is_file():
+        raise InputError("is no ordinary file", key="--output", value=str(path))
+    check_folder(path.parent)
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that cannot be made or written to."""
+    there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+    try:
+        # Permissions alone do not tell: try, where the first new entry would go.
+        with TemporaryFile(dir=there):
+            pass
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InputError(
+            f"cannot be written to: {there}: {reason}", key="--output", value=str(folder)
+        ) from None
 
 
 @contextmanager

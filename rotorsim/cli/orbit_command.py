@@ -11,7 +11,7 @@ import typer
 
 from ..errors import InputError
 from .film_commands import computed_table
-from .inputs import table_path
+from .inputs import check_file, table_path
 from .options import ModelOption, ScenarioArgument, WorkersOption
 from .output import DONE, INCOMPLETE, Output
 from .progress import revolution_progress
@@ -69,12 +69,14 @@ def orbit(
 
     loaded = load_scenario(scenario)
     settings, _ = orbit_settings(loaded)  # what is missing should be said before the work
+    path = recording or Path("logs") / f"{scenario.stem}.rrd"
+    check_file(path)
     _check_mp4(mp4)
     coefficients = _coefficients(output, loaded, scenario, table, workers)
     orbits = _simulate(output, loaded, coefficients, _models(loaded, coefficients, model), live)
     folder = Path("figures") / scenario.stem
     steady = steady or settings.steady_only
-    path = record(orbits, recording or Path("logs") / f"{scenario.stem}.rrd", title=loaded.title)
+    record(orbits, path, title=loaded.title)
     written = write_orbit_figures(orbits, folder, loaded.title, steady) if figures else []
     for wanted, suffix in ((gif, ".gif"), (mp4, ".mp4")):
         if wanted:

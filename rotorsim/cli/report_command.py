@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from .film_commands import computed_table, report_points
-from .inputs import table_path
+from .inputs import check_file, table_path
 from .options import ScenarioArgument, SchedulerOption, WorkersOption
 from .output import INCOMPLETE, Output
 
@@ -36,11 +36,13 @@ def report(
     from ..scenario import load_scenario
 
     loaded = load_scenario(scenario)
+    page = file or Path("reports") / f"{scenario.stem}.html"
+    check_file(page)
     table = table_path(scenario, Path())
     points, coefficients = computed_table(output, loaded, table, workers, scheduler)
     results = compute(loaded, points, coefficients, output.note)
     output.note("report")
-    path = write_report(results, file or Path("reports") / f"{scenario.stem}.html")
+    path = write_report(results, page)
     output.document({"report": path, "table": table, "problems": results.problems})
     output.show(f"{path} is written; open it in a browser")
     code = report_points(output, points)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .film_commands import report_points
+from .inputs import check_folder, check_workers
 from .options import OutputFolder, WorkersOption
 from .output import Output
 
@@ -49,6 +50,8 @@ def reproduce(
     from ..reproduce.writing import document
     from .progress import film_progress
 
+    check_workers(workers)
+    check_folder(folder)
     study = paper_study(COARSE_MESH if coarse else PAPER_MESH)
     output.note(f"{paper.value}: {study.size} film points")
     with film_progress(output, study.size) as progress:

@@ -81,6 +81,8 @@ def read_table(path: str | Path) -> CoefficientTable:
     suffix = source.suffix.lower()
     if not source.exists():
         raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)
+    if source.is_dir():
+        raise TableError("is a directory; give a table", source=source)
     if suffix == ".nc":
         return CoefficientTable.load(source)
     if suffix == ".csv":

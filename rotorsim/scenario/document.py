@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ScenarioError
+from ..shipped import shipped_scenarios
 
 MAX_BYTES = 1_000_000
 MAX_NESTING = 50
@@ -49,9 +50,12 @@ def _similar(path: Path) -> str:
     """Files of nearly that name beside it."""
     if not path.parent.is_dir():
         return f"; nor is there a directory {path.parent}"
-    names = [entry.name for entry in path.parent.glob("*.toml")]
+    names = [entry.name for entry in path.parent.glob("*.toml") if entry.name != path.name]
     close = difflib.get_close_matches(path.name, names, n=1, cutoff=0.5)
-    return f'; did you mean "{path.parent / close[0]}"?' if close else ""
+    if close:
+        return f'; did you mean "{path.parent / close[0]}"?'
+    shipped = ", ".join(shipped_scenarios())
+    return "" if path.suffix or not shipped else f"; the shipped scenarios are {shipped}"
 
 
 def parse_toml(text: str, source: str) -> dict[str, Any]:

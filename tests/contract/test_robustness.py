@@ -1,0 +1,252 @@
+"""What goes wrong outside: nonsense on the command line, damaged files, kills at any moment."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[2]
+TINY = """
+title = "tiny"
+[bearing]
+journal_radius = "50 mm"
+length = "80 mm"
+radial_clearance = "100 um"
+[lubricant]
+viscosity = "0.0277 Pa*s"
+[film]
+mesh = { circumferential = 32, axial = 8 }
+[operating]
+speed = ["6000 rpm", "9000 rpm"]
+eccentricity_ratio = 0.5
+[rotor]
+mass = "1200 kg"
+[orbit]
+speed = "9000 rpm"
+revolutions = 4
+initial_displacement = ["1 um", "0 um"]
+"""
+
+
+@pytest.fixture(scope="module")
+def good_table(tmp_path_factory) -> Path:
+    from rotorsim.scenario import Scenario
+    from rotorsim.sweep import tabulate
+
+    path = tmp_path_factory.mktemp("good") / "good.nc"
+    return tabulate(Scenario.from_text(TINY), workers=1).save(path)
+
+
+@pytest.fixture
+def nonsense(tmp_path, monkeypatch, capsys, good_table):
+    """Call the command line within a folder of good and of useless files."""
+    from rotorsim.cli.app import app
+
+    noise = np.random.default_rng(1).bytes(3000)
+    for name in ("noise.toml", "noise.nc", "noise.csv", "noise.json", "noise.rrd"):
+        (tmp_path / name).write_bytes(noise)
+    for name in ("empty.toml", "empty.nc", "empty.csv", "empty.json", "empty.rrd", "file"):
+        (tmp_path / name).touch()
+    for name in ("folder.toml", "folder.nc", "folder.csv", "folder.json", "folder.rrd"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "good.toml").write_text(TINY, encoding="utf-8")
+    shutil.copy(good_table, tmp_path / "good.nc")
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words: str) -> tuple[int, str, str]:
+        with pytest.raises(SystemExit) as end:
+            app(list(words), prog_name="rotorsim")
+        said = capsys.readouterr()
+        return end.value.code, said.out, said.err  # type: ignore[return-value]
+
+    return call
+
+
+USELESS = ("noise", "empty", "folder", "missing")
+READERS = [
+    *((command, "toml") for command in ("run", "check", "solve", "table", "orbit", "report")),
+    *(("stability", kind) for kind in ("toml", "nc", "csv", "json")),
+    *(("export", kind) for kind in ("nc", "csv", "json")),
+    ("view", "rrd"),
+]
+
+
+@pytest.mark.parametrize(("command", "kind"), READERS)
+@pytest.mark.parametrize("name", USELESS)
+def test_useless_files_are_refused_by_name(command, kind, name, nonsense, tmp_path):
+    before = sorted(os.listdir(tmp_path))
+    options = ["--to", "csv"] if command == "export" else []
+    code, out, err = nonsense(command, f"{name}.{kind}", *options, "--json")
+    assert code == 2, err
+    assert f"{name}.{kind}" in err
+    assert "Traceback" not in err
+    assert json.loads(out)["error"]["message"]
+    assert sorted(os.listdir(tmp_path)) == before
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("run", "good.toml", "--output", "file"),
+        ("table", "good.toml", "--output", "file/x.nc"),
+        ("table", "good.toml", "--output", "folder.nc"),
+        ("table", "good.toml", "--output", "table.txt"),
+        ("orbit", "good.toml", "--output", "folder.rrd"),
+        ("report", "good.toml", "--output", "file/x.html"),
+        ("report", "good.toml", "--output", "."),
+        ("export", "good.nc", "--to", "csv", "--output", "file"),
+        ("export", "good.nc", "--to", "nc"),
+        ("export", "good.nc", "--to", "xlsx"),
+        ("export", "good.nc", "--to", ""),
+        ("orbit", "good.toml", "--table", "noise.nc"),
+        ("orbit", "good.toml", "--table", "good.nc", "--model", "hot"),
+        ("solve", "good.toml", "--speed", "-5 rpm"),
+        ("solve", "good.toml", "--speed", "nan rpm"),
+        ("solve", "good.toml", "--speed", "1e300 rpm"),
+        ("solve", "good.toml", "--speed", "9**9**9 rpm"),
+        ("solve", "good.toml", "--workers", "-1"),
+        ("table", "good.toml", "--workers", "0"),
+        ("stability", "good.nc", "--mass", "-1 kg"),
+        ("stability", "good.nc", "--mass", "1e300 kg"),
+        ("new", ""),
+        ("new", ".."),
+        ("new", "file/x"),
+        ("new", "x", "--iso-vg", "0"),
+        ("new", "x", "--iso-vg", "nan"),
+        ("new", "x", "--eccentricity", "1"),
+        ("new", "x", "--load", ""),
+        ("new", "x", "--load", '"'),
+        ("new", "x", "--example", "../x"),
+        ("new", "x", "--example", "dal", "--load", "1 kN"),
+    ],
+)
+def test_nonsense_is_refused_before_any_work(words, nonsense, tmp_path):
+    before = sorted(os.listdir(tmp_path))
+    code, out, err = nonsense(*words, "--json")
+    assert code == 2, err
+    assert err.splitlines()[-1].startswith("error: ")
+    assert "Traceback" not in err
+    assert json.loads(out)["error"]["message"]
+    assert sorted(os.listdir(tmp_path)) == before
+
+
+def test_shipped_scenarios_are_found_by_name(nonsense):
+    code, out, _ = nonsense("check", "quick", "--json")
+    assert code == 0
+    assert json.loads(out)["points"] == 10
+    code, _, err = nonsense("check", "quikc")
+    assert code == 2
+    assert "quick" in err
+    code, _, _ = nonsense("new", "mine", "--example", "quick", "--quiet")
+    assert code == 0
+    shipped = (ROOT / "scenarios" / "quick.toml").read_text(encoding="utf-8")
+    assert Path("mine.toml").read_text(encoding="utf-8") == shipped
+
+
+def tampered(path: Path, how: str) -> str:
+    import h5py
+
+    if how == "truncated":
+        data = path.read_bytes()
+        path.write_bytes(data[: len(data) // 2])
+        return "truncated or damaged"
+    with h5py.File(path, "r+") as file:
+        if how == "newer":
+            file.attrs["rotorsim_table_version"] = 99
+            return "use a newer rotorsim"
+        if how == "foreign":
+            del file.attrs["rotorsim_table_version"]
+            return "not a coefficient table"
+        file.attrs["scenario"] = TINY.replace("1200 kg", "900 kg")
+    return "does not match its SHA-256"
+
+
+@pytest.mark.parametrize("how", ["truncated", "newer", "foreign", "scenario changed"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("stability", "good.nc"),
+        ("export", "good.nc", "--to", "ross"),
+        ("orbit", "good.toml", "-t", "good.nc"),
+    ],
+)
+def test_damaged_and_newer_tables_are_refused_with_a_reason(how, words, nonsense):
+    reason = tampered(Path("good.nc"), how)
+    code, _, err = nonsense(*words)
+    assert code == 2
+    assert "good.nc" in err
+    assert reason in err
+
+
+KILLING = """
+import json, os, random, signal, sys, time
+from pathlib import Path
+from rotorsim.journal import Journal
+from rotorsim.scenario import Scenario
+from rotorsim.sweep import sweep_points, tabulate
+
+scenario, journal = Scenario.from_text(Path(sys.argv[1]).read_text()), Path(sys.argv[2])
+cases, speeds = list(scenario.cases()), [float(speed) for speed in scenario.speeds]
+sweep_points(cases, speeds[:5], workers=1)  # what the children need is loaded and compiled now
+start = time.perf_counter()
+sweep_points(cases, speeds[:5], workers=1)
+pace = (time.perf_counter() - start) / 5
+dice, kills, told_in_all = random.Random(7), 0, set()
+for _ in range(40):
+    reader, writer = os.pipe()
+    child = os.fork()
+    if child == 0:
+        def tell(done, total, point):
+            os.write(writer, json.dumps(point.speed).encode() + b"\\n")
+        sweep_points(cases, speeds, workers=1, progress=tell, resume=journal)
+        os._exit(0)
+    os.close(writer)
+    time.sleep(dice.uniform(0.0, 60.0 * pace))
+    os.kill(child, signal.SIGKILL)
+    _, status = os.waitpid(child, 0)
+    kills += os.WIFSIGNALED(status)
+    told = b"".join(iter(lambda: os.read(reader, 65536), b""))
+    os.close(reader)
+    told_in_all |= {json.loads(line) for line in told.split(b"\\n")[:-1]}
+    kept = Journal(journal)
+    lost = [speed for speed in told_in_all if kept.find(cases[0], speed) is None]
+    assert not lost, lost
+    if kills == 20:
+        break
+few = sorted(told_in_all)[::10]
+resumed = sweep_points(cases, few, workers=1, resume=journal)
+fresh = sweep_points(cases, few, workers=1)
+same = all(
+    abs(a.stiffness / b.stiffness - 1.0).max() < 1e-4 for a, b in zip(resumed, fresh, strict=True)
+)
+print(json.dumps({"kills": kills, "told": len(told_in_all), "same": same}))
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="POSIX processes")
+def test_killing_a_sweep_twenty_times_loses_no_finished_point(tmp_path):
+    scenario = tmp_path / "long.toml"
+    speeds = 'speed = { start = "500 rpm", stop = "15000 rpm", count = 600 }'
+    text = TINY.replace('speed = ["6000 rpm", "9000 rpm"]', speeds).replace(
+        "eccentricity_ratio = 0.5", 'load = "10 kN"'
+    )
+    scenario.write_text(text.split("[orbit]")[0], encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "-c", KILLING, scenario, tmp_path / "long.journal"],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    said = json.loads(done.stdout)
+    assert said["kills"] == 20
+    assert said["told"] >= 10  # the kills met a sweep at work
+    assert said["same"]
