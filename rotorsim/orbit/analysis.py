@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import InputError
 from .modes import Growth, growth_rate
-from .orbit import Orbit
+from .orbit import Orbit, OrbitStatus
 from .recognition import Recognition, recognise
 from .spectrum import Cascade, Ellipse, cascade, orbit_ellipse
 
@@ -86,7 +86,7 @@ def analyse(orbit: Orbit) -> OrbitAnalysis:
         steady = steady if steady.t.size > 2 else orbit.part(-3)
         if found.whirl_frequency_ratio:
             whirl = orbit_ellipse(steady, abs(found.whirl_frequency_ratio))
-        if orbit.forced:
+        if orbit.forced and found.status is not OrbitStatus.SETTLED:
             synchronous = orbit_ellipse(steady)
     least = int(np.argmin(orbit.min_film))
     return OrbitAnalysis(
@@ -105,10 +105,13 @@ def initial_growth(orbit: Orbit) -> Growth | None:
     """Growth of the small motions with which a run begins, at constant speed.
 
     Linear coefficients know no large motions: the whole run counts. With a nonlinear film only the
-    part counts that stays within `SMALL_MOTION` of the equilibrium.
+    part counts that stays within `SMALL_MOTION` of the equilibrium, and only without unbalance and
+    loads.
     """
     part = orbit
     if orbit.force_model != "linear":
+        if orbit.forced:
+            return None  # what is forced cannot be told from what is free
         away = np.hypot(orbit.x - orbit.equilibrium[0], orbit.y - orbit.equilibrium[1])
         large = np.flatnonzero(away > SMALL_MOTION * orbit.radial_clearance)
         part = orbit.part(0, int(large[0]) if large.size else None)

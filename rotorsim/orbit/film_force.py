@@ -151,7 +151,7 @@ def loaded_film(
         return _mapped(case, speed, cache, progress)
     solution = _operating_film(case, speed)
     load = float(np.hypot(*solution.state.force))
-    rpm = f"{speed * 30.0 / math.pi:.4g} rpm"
+    rpm = f"{speed * 30.0 / math.pi:.0f} rpm"
     heated = solution.thermal is not None
     notes = ["film solved at each step"]
     if heated:

@@ -26,6 +26,7 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import __version__
 from ..atomic import replacing
 from ..errors import InputError
 from ..film.layers import isoviscous_layers
@@ -49,12 +50,12 @@ Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 MAP_VERSION = 1
-"""Raise it whenever the map's numbers would change: older files are then passed over."""
+"""Raise it whenever the map's numbers change within a version: older files are passed over."""
 MAPPED = (Cavitation.REYNOLDS, Cavitation.HALF_SOMMERFELD)
 """Rupture conditions that are homogeneous of first degree in pressure and know no history."""
 _ROWS, _COLUMNS, _MAX_ECCENTRICITY_RATIO = 41, 96, 0.98
-_MESH, _THIN_MESH = (256, 32), (256, 48)
-_THIN = 0.85
+_MESH, _THIN_MESH = (256, 24), (256, 48)
+_THIN = 0.8
 """Eccentricity ratio above which the pressure's boundary layers at the ends need `_THIN_MESH`."""
 _CLEARANCE = 1e-3
 
@@ -112,7 +113,7 @@ def cache_folder() -> Path:
 def map_path(length_to_diameter: float, cavitation: Cavitation, folder: Path) -> Path:
     """File of one map; its name holds everything that the numbers depend on."""
     settings = (
-        MAP_VERSION, length_to_diameter, cavitation.value, _ROWS, _COLUMNS,
+        __version__, MAP_VERSION, length_to_diameter, cavitation.value, _ROWS, _COLUMNS,
         _MAX_ECCENTRICITY_RATIO, _MESH, _THIN_MESH, _THIN,
     )  # fmt: skip
     key = hashlib.sha256(repr(settings).encode()).hexdigest()[:12]
@@ -156,9 +157,9 @@ def write_map(path: Path, force_map: ForceMap) -> None:
 def read_map(path: Path) -> ForceMap | None:
     """Read a map; None where the file is missing, damaged or of another kind."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             coefficients, numbers = file["coefficients"], file["numbers"]
-    except (OSError, ValueError, KeyError, EOFError, BadZipFile):
+    except (OSError, ValueError, KeyError, EOFError, TypeError, AttributeError, BadZipFile):
         return None
     shape_right = coefficients.ndim == 3 and coefficients.shape[0] == 2 and numbers.shape == (4,)
     if not shape_right or coefficients.dtype != float or numbers.dtype != float:

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 from ..errors import InputError
 from .equilibrium import find_equilibrium
 from .forces import LinearForce
-from .loads import pack_loads
+from .loads import BaseMotion, HarmonicForce, pack_loads
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import OrbitProblem
 from .recognition import recognise
@@ -287,6 +287,9 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         message=message,
         events=events,
         forced=bool(np.any(problem.rotor.unbalance)) or bool(problem.loads),
+        forcing=tuple(
+            load.frequency for load in problem.loads if isinstance(load, HarmonicForce | BaseMotion)
+        ),
         kind=problem.kind,
         note=problem.note,
     )

@@ -80,6 +80,9 @@ def recognise(orbit: Orbit) -> Recognition:
         if abs(later - earlier) > 0.01 * later:
             trend = "growing" if later > earlier else "decaying"
             return Recognition(OrbitStatus.COMPLETED, f"whirl at {ratio:.4f} still {trend}")
+        if any(abs(abs(ratio) * orbit.speed[0] - load) < 1e-3 * load for load in orbit.forcing):
+            message = f"follows the load at {abs(ratio):.4f} of shaft speed"
+            return Recognition(OrbitStatus.PERIODIC, message, start, whirl_frequency_ratio=ratio)
     shaken = orbit.forced and orbit_ellipse(last).semi_major > 0.01 * after
     status = OrbitStatus.QUASI_PERIODIC if shaken else OrbitStatus.LIMIT_CYCLE
     message = "steady whirl" if ratio is None else f"steady whirl at {ratio:.4f} of shaft speed"

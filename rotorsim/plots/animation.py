@@ -21,10 +21,10 @@ from .style import MICRO, RPM, SETTINGS, model_style, new_axes
 
 Array = NDArray[np.float64]
 
-FRAMES_PER_SECOND = 15
-RUN_FRAMES = 75
+FRAMES_PER_SECOND = 12
+RUN_FRAMES = 50
 """Of the first act, the whole run."""
-SLOW_FRAMES, SLOW_FRAMES_PER_REVOLUTION = 90, 18
+SLOW_FRAMES, SLOW_FRAMES_PER_REVOLUTION = 72, 16
 """Of the second act, the last turns in slow motion."""
 TRAIL_REVOLUTIONS = 3.0
 FORCE_LENGTH = 0.45
@@ -93,7 +93,7 @@ def animate_orbits(
     with mpl.rc_context(SETTINGS):
         scenes = [_Scene(axes[0, k], axes[1, k], orbit) for k, orbit in enumerate(orbits)]
         counts = {scene.frames(slow_only).size for scene in scenes}
-        with replacing(target) as temporary, writer.saving(figure, str(temporary), dpi=90):
+        with replacing(target) as temporary, writer.saving(figure, str(temporary), dpi=80):
             for frame in range(max(counts)):
                 for scene in scenes:
                     scene.show(frame, slow_only)
@@ -167,6 +167,8 @@ class _Scene:
             (self.x[at] + self.arrows[at, 0], self.y[at] + self.arrows[at, 1]),
         )
         self.cursor.set_xdata([turns[at], turns[at]])
+        if frame == (0 if slow_only else RUN_FRAMES):
+            self.below.set_xlim(turns[frames[-SLOW_FRAMES]], turns[-1])
         pace = "" if act_one else ", slow motion"
         self.words.set_text(
             f"turn {turns[at]:.1f}, {self.orbit.time[at]:.3f} s, "
@@ -197,6 +199,7 @@ class _Scene:
         ax.legend(loc="lower right")
 
     def _below(self, ax: Axes) -> None:
+        self.below = ax
         rows = np.arange(0, self.x.size, max(1, self.x.size // (5 * PATH_POINTS)))
         turns = self.orbit.revolutions
         ax.plot(turns[rows], self.x[rows], color=self.colour, linewidth=0.6, label="x")
