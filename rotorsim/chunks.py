@@ -7,12 +7,10 @@ from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from .errors import InputError
-from .model import Case, EccentricityTarget
+from .model import Case
 from .operating_point import OperatingPoint
-from .status import SolveStatus
+from .records import failed_point
 
 
 @dataclass(frozen=True)
@@ -65,38 +63,3 @@ def result_or_failure(
     except Exception as error:
         message = f"the executor failed: {type(error).__name__}: {error}"
     return tuple(failed_point(chunk.case, speed, message) for speed in chunk.speeds)
-
-
-def failed_point(case: Case, speed: float, message: str) -> OperatingPoint:
-    """Point with status ``failed``: everything that is not known is NaN."""
-    nan = float("nan")
-    target = case.target
-    known = target.eccentricity_ratio if isinstance(target, EccentricityTarget) else nan
-    load = nan if isinstance(target, EccentricityTarget) else target.load
-    return OperatingPoint(
-        status=SolveStatus.FAILED,
-        message=message,
-        thermal_model=case.thermal.model.value,
-        cavitation=case.film.cavitation.value,
-        speed=speed,
-        radial_clearance=case.bearing.radial_clearance,
-        eccentricity_ratio=known,
-        attitude_angle=nan,
-        load=load,
-        sommerfeld_number=nan,
-        max_pressure=nan,
-        max_temperature=nan,
-        mean_temperature=nan,
-        friction_force=nan,
-        power_loss=nan,
-        side_flow=nan,
-        min_film_thickness=nan,
-        stiffness=np.full((2, 2), nan),
-        damping=np.full((2, 2), nan),
-        critical_mass=None,
-        critical_mass_dimensionless=None,
-        whirl_frequency_ratio=None,
-        stability=None,
-        iterations=0,
-        residual=nan,
-    )

@@ -1,4 +1,4 @@
-"""Operating points as plain JSON-ready dictionaries, and back."""
+"""Operating points without numbers, and as plain JSON-ready dictionaries and back."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from .model import Case, EccentricityTarget, LoadTarget
 from .operating_point import HeatBalance, OperatingPoint
 from .status import SolveStatus, Stability
 
@@ -53,6 +54,41 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
     if values["heat_balance"] is not None:
         values["heat_balance"] = HeatBalance(**values["heat_balance"])
     return OperatingPoint(**values)
+
+
+def failed_point(
+    case: Case, speed: float, message: str, status: SolveStatus = SolveStatus.FAILED
+) -> OperatingPoint:
+    """Point without numbers: all that the case does not give is NaN."""
+    nan, target = math.nan, case.target
+    given = target.eccentricity_ratio if isinstance(target, EccentricityTarget) else nan
+    return OperatingPoint(
+        status=status,
+        message=message,
+        thermal_model=case.thermal.model.value,
+        cavitation=case.film.cavitation.value,
+        speed=speed,
+        radial_clearance=case.bearing.radial_clearance,
+        eccentricity_ratio=given,
+        attitude_angle=nan,
+        load=target.load if isinstance(target, LoadTarget) else nan,
+        sommerfeld_number=nan,
+        max_pressure=nan,
+        max_temperature=nan,
+        mean_temperature=nan,
+        friction_force=nan,
+        power_loss=nan,
+        side_flow=nan,
+        min_film_thickness=nan,
+        stiffness=np.full((2, 2), nan),
+        damping=np.full((2, 2), nan),
+        critical_mass=None,
+        critical_mass_dimensionless=None,
+        whirl_frequency_ratio=None,
+        stability=None,
+        iterations=0,
+        residual=nan,
+    )
 
 
 def plain(value: Any) -> Any:

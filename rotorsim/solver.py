@@ -18,6 +18,7 @@ from .film.losses import friction_force, liquid_fraction, peak, side_flow
 from .film.solution import FilmSolution, WarmStart, solve_film
 from .model import Case, LoadTarget, ThermalModel, ViscosityResponse
 from .operating_point import FilmFields, HeatBalance, OperatingPoint
+from .records import failed_point
 from .stability.whirl import rigid_threshold
 from .status import SolveStatus
 
@@ -111,9 +112,9 @@ def solve_case(
         if solution.status is not SolveStatus.CONVERGED and initial is not None:
             solution = solve_film(case, speed)  # the first guess may have been a bad one
     except NoFilmError as error:
-        return _failed(case, speed, str(error), SolveStatus.NO_EQUILIBRIUM), None
+        return failed_point(case, speed, str(error), SolveStatus.NO_EQUILIBRIUM), None
     except SingularFilmError as error:
-        return _failed(case, speed, f"the film's equations cannot be solved: {error}"), None
+        return failed_point(case, speed, f"the film's equations cannot be solved: {error}"), None
     point = operating_point(case, speed, solution, keep_fields=keep_fields)
     usable = solution.status is SolveStatus.CONVERGED
     return point, solution.warm_start if usable else None
@@ -281,41 +282,6 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
         viscosity=whole(viscosity),
         bush_temperature=whole(bush),
         shaft_temperature=shaft,
-    )
-
-
-def _failed(
-    case: Case, speed: float, message: str, status: SolveStatus = SolveStatus.FAILED
-) -> OperatingPoint:
-    """A point without numbers."""
-    nan = math.nan
-    load = case.target.load if isinstance(case.target, LoadTarget) else nan
-    return OperatingPoint(
-        status=status,
-        message=message,
-        thermal_model=str(case.thermal.model),
-        cavitation=str(case.film.cavitation),
-        speed=speed,
-        radial_clearance=case.bearing.radial_clearance,
-        eccentricity_ratio=nan,
-        attitude_angle=nan,
-        load=load,
-        sommerfeld_number=nan,
-        max_pressure=nan,
-        max_temperature=nan,
-        mean_temperature=nan,
-        friction_force=nan,
-        power_loss=nan,
-        side_flow=nan,
-        min_film_thickness=nan,
-        stiffness=np.full((2, 2), nan),
-        damping=np.full((2, 2), nan),
-        critical_mass=None,
-        critical_mass_dimensionless=None,
-        whirl_frequency_ratio=None,
-        stability=None,
-        iterations=0,
-        residual=nan,
     )
 
 

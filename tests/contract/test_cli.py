@@ -431,8 +431,8 @@ def test_a_closed_pipe_is_no_error(tmp_path):
 def test_warnings_that_differ_in_numbers_alone_are_told_once():
     import dataclasses
 
-    from rotorsim.chunks import failed_point
     from rotorsim.pipeline.wording import grouped_warnings
+    from rotorsim.records import failed_point
     from rotorsim.scenario import Scenario
 
     case = Scenario.from_text(TINY).case(thermal_model="thd")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rotorsim.chunks import failed_point
 from rotorsim.errors import InputError
 from rotorsim.pipeline import orbits as orbit_steps
 from rotorsim.pipeline.main_job import Attempts, compute
@@ -13,6 +12,7 @@ from rotorsim.pipeline.orbits import static_position
 from rotorsim.pipeline.recordings import follow_branches
 from rotorsim.pipeline.stability import crossings, stability_curves
 from rotorsim.pipeline.writing import write_results
+from rotorsim.records import failed_point
 from rotorsim.scenario import Scenario
 from rotorsim.sweep import as_table, sweep_points
 
