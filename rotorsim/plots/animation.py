@@ -92,6 +92,9 @@ def animate_orbits(
     )
     with mpl.rc_context(SETTINGS):
         scenes = [_Scene(axes[0, k], axes[1, k], orbit) for k, orbit in enumerate(orbits)]
+        # Laid out once: doing it anew for every picture takes most of the time.
+        figure.draw_without_rendering()
+        figure.set_layout_engine("none")
         counts = {scene.frames(slow_only).size for scene in scenes}
         with replacing(target) as temporary, writer.saving(figure, str(temporary), dpi=80):
             for frame in range(max(counts)):

@@ -1,0 +1,160 @@
+"""The orbit command with the nonlinear film: documents, pictures, live view, refusals."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rerun")
+
+TEXT = """
+title = "small"
+[bearing]
+journal_radius = "25 mm"
+length = "25 mm"
+radial_clearance = "50 um"
+[[bearing.groove]]
+center = "180 deg"
+extent = "20 deg"
+[lubricant]
+viscosity = "0.02 Pa*s"
+[film]
+mesh = { circumferential = 48, axial = 8 }
+[operating]
+speed = ["6000 rpm", "12000 rpm"]
+load = "800 N"
+[rotor]
+mass = "40 kg"
+[orbit]
+kind = "free_decay"
+force = "film"
+speed = "12000 rpm"
+revolutions = 24
+samples_per_revolution = 16
+initial_displacement = ["5 um", "0 um"]
+"""
+RAMP = '{ start = "9000 rpm", stop = "12000 rpm", duration = "0.2 s" }'
+
+
+@pytest.fixture
+def call(tmp_path, monkeypatch, capsys):
+    from rotorsim.cli.app import app
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    (tmp_path / "small.toml").write_text(TEXT, encoding="utf-8")
+
+    def run(*words: str) -> subprocess.CompletedProcess:
+        with pytest.raises(SystemExit) as end:
+            app(["orbit", *words], prog_name="rotorsim")
+        said = capsys.readouterr()
+        return subprocess.CompletedProcess(words, end.value.code, said.out, said.err)
+
+    return run
+
+
+def test_json_says_what_the_orbit_comes_to(call, tmp_path):
+    done = call("small.toml", "--json")
+    assert done.returncode == 0, done.stderr
+    (row,) = json.loads(done.stdout, parse_constant=pytest.fail)["orbits"]
+    assert row["status"] == "settled"
+    assert row["force"] == "film"
+    assert row["growth_rate"] < 0.0
+    assert 0.4 < row["whirl_frequency_ratio"] < 0.6
+    assert row["min_film"] > 2e-5
+    assert "solved at each step" in row["message"]
+    assert [event["name"] for event in row["events"]] == ["settled"]
+    assert (tmp_path / "logs" / "small.rrd").is_file()
+    assert not (tmp_path / "coefficients").exists()  # a nonlinear film needs no table
+
+
+def test_pictures_are_written_where_asked(call, tmp_path):
+    from PIL import Image
+
+    text = TEXT.replace("revolutions = 24\n", "").replace('"free_decay"', '"run_up"')
+    (tmp_path / "ramp.toml").write_text(
+        text.replace("[orbit]\nkind", f"[orbit]\nspeed = {RAMP}\nkind").replace(
+            'force = "film"\nspeed = "12000 rpm"', 'force = "film"'
+        )
+    )
+    done = call("ramp.toml", "--figures", "--gif", "--steady")
+    assert done.returncode == 0, done.stderr
+    folder = tmp_path / "figures" / "ramp"
+    assert {file.name for file in folder.iterdir()} == {
+        "orbits.png", "cascade_isothermal_run_up.png", "orbit.gif",
+    }  # fmt: skip
+    with Image.open(folder / "orbit.gif") as moving:
+        assert moving.n_frames > 30
+        first = np.asarray(moving.convert("RGB")).astype(int)
+        moving.seek(moving.n_frames // 2)
+        later = np.asarray(moving.convert("RGB")).astype(int)
+    assert np.abs(first - later).max() > 100  # something moves
+    assert not list(folder.glob(".*"))
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--table", "any.nc"), "has no use"),
+        (("--mp4",), "ffmpeg"),
+        (("--live",), "no display"),
+        (("--model", "thd"), "must be one of the scenario's models"),
+    ],
+)
+def test_what_cannot_be_done_is_said_at_once(call, monkeypatch, words, said):
+    monkeypatch.setattr("shutil.which", lambda _name: None)
+    monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("WAYLAND_DISPLAY", raising=False)
+    done = call("small.toml", *words)
+    assert done.returncode == 2
+    assert said in " ".join(done.stderr.split())
+
+
+def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
+    import rerun as rr
+    from rerun.chunk import RrdReader
+
+    from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, rigid_rotor, simulate
+    from rotorsim.pipeline.recordings import orbit_tracks
+    from rotorsim.recording.live import LiveView
+
+    path = tmp_path / "live.rrd"
+    stream = rr.RecordingStream("rotorsim", send_properties=False)
+    stream.save(path)
+    problem = OrbitProblem(
+        ShortBearingForce(0.0277, 0.025, 0.05, 1e-4),
+        rigid_rotor(5.0),
+        SpeedSchedule.constant(1000.0, 100.0),
+        static_load=(400.0, 0.0),
+        initial_displacement=(3e-5, 0.0),
+        samples_per_revolution=16,
+    )
+    with LiveView("live", stream) as view:
+        orbit = simulate(problem, consume=lambda piece: view.show(orbit_tracks([piece])[0]))
+    batch = (
+        RrdReader(str(path))
+        .stream()
+        .filter(content="/orbit/isothermal/journal_um", has_timeline="time")
+        .to_chunks()
+    )
+    rows = np.concatenate(
+        [
+            np.array(chunk.to_record_batch().column("Points2D:positions").to_pylist()).reshape(
+                -1, 2
+            )
+            for chunk in batch
+        ]
+    )
+    # every piece but the first begins with the last sample of the one before
+    assert len(rows) >= orbit.t.size
+    found = {(round(float(x), 3), round(float(y), 3)) for x, y in rows}
+    exact = {
+        (round(float(x) * 1e6, 3), round(-float(y) * 1e6, 3))
+        for x, y in zip(orbit.x, orbit.y, strict=True)
+    }
+    assert len(exact - found) < 0.02 * len(exact)  # single precision rounds some the other way
