@@ -171,7 +171,7 @@ class _Scene:
         )
         self.cursor.set_xdata([turns[at], turns[at]])
         if frame == (0 if slow_only else RUN_FRAMES):
-            self.below.set_xlim(turns[frames[-SLOW_FRAMES]], turns[-1])
+            self.below.set_xlim(float(turns[frames[-SLOW_FRAMES]]), float(turns[-1]))
         pace = "" if act_one else ", slow motion"
         self.words.set_text(
             f"turn {turns[at]:.1f}, {self.orbit.time[at]:.3f} s, "
