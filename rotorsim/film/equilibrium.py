@@ -116,6 +116,7 @@ class AttitudeSearch:
     """Direction of the load in the film frame [rad]."""
     multiplicity: float
     unreachable: bool = False
+    _last: tuple[float, float] | None = None
 
     def __call__(self, state: FilmState) -> tuple[Position, float]:
         """Newton's next position, and the force across the load line relative to the force."""
@@ -130,7 +131,14 @@ class AttitudeSearch:
         direction = math.remainder(carried - self.load_angle, 2.0 * math.pi)
         rate = (state.force[0] * turn[1] - state.force[1] * turn[0]) / size**2
         step = -direction / rate if abs(rate) > 1e-3 else -direction
-        return self.at(angle + max(-0.4, min(0.4, step))), abs(direction)
+        step = max(-0.4, min(0.4, step))
+        if self._last is not None and direction * self._last[1] < 0.0:
+            # The root lies between: a step that leads back to where it came from is cut short.
+            back = self._last[0] - angle
+            if step * back > 0.0 and abs(step) > 0.7 * abs(back):
+                step = back * direction / (direction - self._last[1])
+        self._last = (angle, direction)
+        return self.at(angle + step), abs(direction)
 
     def allowed(self, old: Position, new: Position) -> Position:  # noqa: ARG002
         """Stay at the given eccentricity."""

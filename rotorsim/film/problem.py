@@ -17,8 +17,9 @@ from ..model import (
     ThermalModel,
     ThermalSettings,
 )
+from .banded import NoFilmError
 from .cavitation import solve_pressure
-from .geometry import Stations, film_thickness, stations
+from .geometry import Stations, film_thickness, stations, thinnest_film
 from .jfo import solve_jfo
 from .layers import LayerIntegrals
 from .linearized import film_force
@@ -101,6 +102,8 @@ def film_state(
     """Pressure and force with the journal at `position` [m], moving with `velocity` [m/s]."""
     mesh = problem.mesh
     thickness = film_thickness(problem.stations, position)
+    if thinnest_film(problem.stations, position) <= 0.0:
+        raise NoFilmError("the journal touches the bore: lobes and tilt leave less room than asked")
     operator = film_operator(problem.topology, thickness, layers, problem.surface_speed)
     squeeze = None
     if velocity != (0.0, 0.0):

@@ -41,6 +41,8 @@ FAR_RESIDUAL = 0.1
 """Change of log viscosity above which the cells' states are guessed anew."""
 ROUGH_TOLERANCE = 0.02
 """Change of log viscosity and relative force residual at which the solution is known roughly."""
+HEAT_WEIGHT = 0.01
+"""How heat astray, relative to the dissipation, counts against a change of log viscosity."""
 STAGNATION = 6
 """Iterations over which the residual should at least halve."""
 FREEZE_AFTER = 12
@@ -207,7 +209,7 @@ def solve_thermal_film(
         energy = energy_problem(problem, state)
         inlet = inlet_temperatures(problem, energy, heat.temperature)
         mapped, leaving = _through_energy(problem, energy, viscosity, heat, inlet, bush, leaving)
-        residual = _change(problem, mapped, heat)
+        residual = _change(problem, energy, mapped, heat)
         history.append(residual)
         # While the heat still moves much, coarser meshes guess the full cells better than the past.
         guess = full if residual < FAR_RESIDUAL else None
@@ -244,16 +246,27 @@ def _stagnates(history: list[float]) -> bool:
     return min(recent) > 0.5 * min(history[:-STAGNATION])
 
 
-def _change(problem: FilmProblem, mapped: Heat, heat: Heat) -> float:
-    """Largest change of log viscosity anywhere, as the oil thins fastest; walls included."""
+def _change(problem: FilmProblem, energy: EnergyProblem, mapped: Heat, heat: Heat) -> float:
+    """Largest change of log viscosity anywhere, as the oil thins fastest; walls included.
+
+    Where conduction across the film is strong against what flows, temperatures that hardly change
+    still carry heat into walls that should take none: that counts too, relative to the dissipation.
+    """
+    bore, shaft = np.abs(mapped.bush - heat.bush), abs(mapped.shaft - heat.shaft)
     change = max(
-        float(np.abs(mapped.temperature - heat.temperature).max()),
-        float(np.abs(mapped.bush - heat.bush).max()),
-        abs(mapped.shaft - heat.shaft),
+        float(np.abs(mapped.temperature - heat.temperature).max()), float(bore.max()), shaft
     )
     coldest = float(mapped.temperature.min())
     near = problem.lubricant.law.viscosity(np.array([coldest, coldest + 1e-3]))
-    return change * max(float(np.log(near[0] / near[1])) / 1e-3, 1e-6)
+    thinning = max(float(np.log(near[0] / near[1])) / 1e-3, 1e-6)
+    layers = energy.layers.pressure_share.shape[2]
+    exchanged = shaft * _film_conductance(energy)
+    if problem.thermal.bush is BushModel.CONDUCTION:
+        exchanged += float(np.sum(2.0 * energy.conductance * bore)) / layers
+    made = float(
+        np.sum(energy.heating[2] * energy.layers.f2 + energy.heating[0] * energy.layers.f0)
+    )
+    return max(change * thinning, HEAT_WEIGHT * exchanged / made if made > 0.0 else 0.0)
 
 
 def _bush_of(problem: FilmProblem) -> BushConduction | None:
