@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from .. import __version__
+from .control_command import control
 from .file_commands import export, new, view
 from .film_commands import check, solve, table
 from .orbit_command import orbit
@@ -46,5 +47,18 @@ def root(
     """
 
 
-for command in (run, check, solve, table, stability, orbit, report, view, export, new, reproduce):
+for command in (
+    run,
+    check,
+    solve,
+    table,
+    stability,
+    control,
+    orbit,
+    report,
+    view,
+    export,
+    new,
+    reproduce,
+):
     app.command()(guarded(command))

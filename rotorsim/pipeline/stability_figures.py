@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .campbell import Campbell
+    from .control_study import ControlStudy
     from .tolerances import ToleranceStudy
 
 _RPM = 30.0 / np.pi
@@ -114,3 +115,37 @@ def tolerance_figure(study: ToleranceStudy, title: str = "") -> Figure:
         (study.nominal["threshold_speed"], study.nominal["critical_mass"]),
         title,
     )
+
+
+def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
+    """Root locus over the loop gain, Bode diagram of the receptance, and the runs in time."""
+    from ..plots import OrbitPicture, bode_plot, orbit_plot, root_locus
+    from ..stability.control import receptance
+    from ..stability.modes import track_modes
+
+    system, gain = study.system, study.feedback.gain
+    heading = f"{title}\n{study.speed * _RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
+    share = np.linspace(0.0, 1.5, 61)
+    locus = track_modes(lambda f: np.asarray(system.A) - f * np.asarray(system.B) @ gain, share)
+    yield (
+        "root_locus",
+        root_locus(locus.parameter, locus.eigenvalues, "share of the gain [-]", heading),
+    )
+    frequency = np.geomspace(0.05 * study.speed, 4.0 * study.speed, 400)
+    closed = study.feedback.closed_loop(system)
+    responses = [
+        ("film alone", receptance(system, frequency)[0, 0]),
+        ("with actuator", receptance(closed, frequency)[0, 0]),
+    ]
+    yield "bode", bode_plot(frequency, responses, "receptance x per force x [m/N]", title=heading)
+    runs = (("film alone", study.passive_orbit), ("with actuator", study.controlled_orbit))
+    pictures = [
+        OrbitPicture(
+            name, f"{name}: {one.status.value.replace('_', ' ')}", one.x, one.y,
+            one.radial_clearance, np.asarray(study.equilibrium),
+        )
+        for name, one in runs
+        if one is not None
+    ]  # fmt: skip
+    if pictures:
+        yield "control_orbits", orbit_plot(pictures, heading)

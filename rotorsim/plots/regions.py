@@ -100,7 +100,10 @@ def stability_plane(
     ax.grid(visible=False)
     figure = figure_of(ax)
     if len(figure.axes) == 1:
-        figure.legend(handles=shown, loc="outside lower center", ncols=2)
+        # Two of the long labels side by side must fit the width.
+        long = sum(len(str(handle.get_label())) > 30 for handle in shown) > 1
+        size = 6.8 if long else 8.0
+        figure.legend(handles=shown, loc="outside lower center", ncols=2, fontsize=size)
     else:
         ax.legend(handles=shown, loc="upper right", fontsize=6.5)
     return figure

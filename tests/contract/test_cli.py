@@ -19,7 +19,7 @@ ROOT = Path(__file__).parents[2]
 QUICK = ROOT / "scenarios" / "quick.toml"
 COMMANDS = (
     *("run", "check", "solve", "table", "stability", "orbit", "report", "view", "export", "new"),
-    "reproduce",
+    *("control", "reproduce"),
 )
 POINT_KEYS = (
     "status thermal_model cavitation speed radial_clearance eccentricity_ratio attitude_angle load "

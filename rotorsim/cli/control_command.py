@@ -1,0 +1,189 @@
+"""The command `control`: an actuator that holds a rotor past its threshold."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..errors import InputError
+from .inputs import wanted_mass
+from .options import ClearanceOption, ModelOption, ScenarioArgument, SpeedOption
+from .output import DONE, INCOMPLETE, Output
+from .stability_options import FolderOption, MassOption
+
+if TYPE_CHECKING:
+    from ..model import Case
+    from ..pipeline.control_study import ControlStudy
+    from ..scenario import Scenario
+
+
+class DesignChoice(StrEnum):
+    """Kinds of feedback."""
+
+    LQR = "lqr"
+    PD = "pd"
+
+
+def control(
+    output: Output,
+    scenario: ScenarioArgument,
+    speed: SpeedOption = None,
+    mass: MassOption = None,
+    clearance: ClearanceOption = None,
+    model: ModelOption = None,
+    design: Annotated[
+        DesignChoice, typer.Option("--design", help="Full state feedback, or PD for each axis.")
+    ] = DesignChoice.LQR,
+    max_force: Annotated[
+        str | None,
+        typer.Option(
+            "--max-force", metavar="FORCE", help='Where each axis saturates, e.g. "2 kN".',
+            show_default="never",
+        ),
+    ] = None,
+    disturbance: Annotated[
+        str | None,
+        typer.Option(
+            "--disturbance", metavar="LENGTH", help="From rest, at the start of the run in time.",
+            show_default="a fiftieth of the clearance",
+        ),
+    ] = None,
+    revolutions: Annotated[
+        int | None,
+        typer.Option(
+            "--revolutions", metavar="N", help="Of that run; 0: none.", min=0, max=100_000,
+            show_default="20 where the film is solved at every step, else 100",
+        ),
+    ] = None,
+    folder: FolderOption = None,
+) -> int:  # fmt: skip
+    """Design a magnetic actuator's feedback, and try it in time on the nonlinear film.
+
+    Example: rotorsim control scenarios/quick.toml --speed "15000 rpm" --max-force "2 kN"
+    """
+    from ..pipeline.control_study import ControlWishes, Design, study_control
+    from ..scenario import load_scenario
+
+    loaded = load_scenario(scenario)
+    force = _quantity(max_force, "force", "--max-force", "2 kN")
+    wishes = ControlWishes(
+        design=Design(design.value),
+        disturbance=_quantity(disturbance, "length", "--disturbance", "2 um"),
+        revolutions=revolutions,
+        **({} if force is None else {"max_force": force}),
+    )
+    at = _quantity(speed, "speed", "--speed", "15000 rpm") or float(loaded.speeds[-1])
+    study = study_control(_case(loaded, clearance, model), at, _mass(loaded, mass), wishes)
+    document = study_document(study)
+    if folder is not None:
+        from ..pipeline.stability_figures import control_figures, save_figures
+
+        document["files"] = save_figures(control_figures(study, loaded.title), folder)
+    output.document(document)
+    if not (output.json or output.quiet):
+        output.show(*study_tables(study))
+        output.show(*map(str, document.get("files", [])))
+    if study.holds:
+        return DONE
+    held = document["controlled"]
+    output.warn(f"the actuator does not hold the rotor: {held['status']}, {held['message']}")
+    return INCOMPLETE
+
+
+def _quantity(text: str | None, kind: str, key: str, example: str) -> float | None:
+    from ..units import parse_quantity
+
+    if text is None:
+        return None
+    value = parse_quantity(text, kind, key=key, example=example)
+    if value <= 0.0:
+        raise InputError("must be above 0", key=key, value=text)
+    return value
+
+
+def _mass(scenario: Scenario, text: str | None) -> float:
+    from ..model.rotor import rigid_mass
+
+    mass = wanted_mass(text) or rigid_mass(scenario.rotor)
+    if mass is None:
+        raise InputError('is missing: a rigid rotor, e.g. "900 kg"', key="--mass")
+    return mass
+
+
+def _case(scenario: Scenario, clearance: str | None, model: str | None) -> Case:
+    names = [str(name) for name in scenario.thermal_models]
+    chosen = model or ("thd" if "thd" in names else names[0])
+    return scenario.case(_quantity(clearance, "length", "--clearance", "100 um"), chosen)
+
+
+def study_document(study: ControlStudy) -> dict[str, Any]:
+    """A control study for JSON."""
+    import dataclasses
+
+    def motion(orbit: Any, values: Any) -> dict[str, Any]:
+        return {
+            "eigenvalues": values,
+            "growth_rate": float(values[0].real),
+            "status": None if orbit is None else orbit.status.value,
+            "message": "" if orbit is None else orbit.message,
+            "max_eccentricity_ratio": (
+                None if orbit is None else float(orbit.eccentricity_ratio.max())
+            ),
+        }
+
+    return {
+        "speed": study.speed,
+        "mass": study.mass,
+        "load": study.load,
+        "disturbance": study.disturbance,
+        "critical_mass": study.passive.critical_mass,
+        "gain": study.feedback.gain,
+        "max_force": study.feedback.max_force,
+        "largest_force": study.largest_force,
+        "margins": {
+            axis: dataclasses.asdict(one) for axis, one in zip("xy", study.margins, strict=True)
+        },
+        "passive": motion(study.passive_orbit, study.passive_eigenvalues),
+        "controlled": motion(study.controlled_orbit, study.controlled_eigenvalues),
+        "holds": study.holds,
+        "note": study.note,
+    }
+
+
+def study_tables(study: ControlStudy) -> list[Any]:
+    """A control study for people."""
+    from .tables import RPM, grid, number
+
+    said = study_document(study)
+    title = f"{study.speed * RPM:.0f} rpm, {number(study.mass)} kg per bearing"
+    table = grid(title, "", "growth 1/s", "run in time", "max eps")
+    for name in ("passive", "controlled"):
+        row = said[name]
+        status = "-" if row["status"] is None else row["status"].replace("_", " ")
+        eps = number(row["max_eccentricity_ratio"], 3)
+        table.add_row(name, number(row["growth_rate"]), status, eps)
+    heads = ("", "x kN/mm", "y kN/mm", "vx kN s/m", "vy kN s/m")
+    gains = grid("Force = - gain (x, y, vx, vy)", *heads)
+    for axis, row in zip("xy", study.feedback.gain, strict=True):
+        cells = (*(number(v / 1e6) for v in row[:2]), *(number(v / 1e3) for v in row[2:]))
+        gains.add_row(f"F{axis}", *cells)
+    margins = grid("Margins of the loops", "axis", "gain up", "gain down", "phase deg", "modulus")
+    for axis, one in zip("xy", study.margins, strict=True):
+        margins.add_row(
+            axis, *(_factor(v) for v in (one.gain_increase, one.gain_reduction)),
+            _factor(one.phase_margin * 57.29577951308232), number(one.modulus_margin, 3),
+        )  # fmt: skip
+    force = study.largest_force
+    lines = [] if force is None else [
+        f"largest actuator force {number(force)} N of {_factor(study.feedback.max_force)} N, "
+        f"from {number(study.disturbance * 1e6)} um beside rest; load {number(study.load)} N"
+    ]  # fmt: skip
+    return [table, gains, margins, *lines, *([study.note] if study.note else [])]
+
+
+def _factor(value: float) -> str:
+    import math
+
+    return f"{value:.3g}" if math.isfinite(value) else "unlimited"

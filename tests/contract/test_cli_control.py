@@ -1,0 +1,100 @@
+"""The command `control`: an actuator that holds the rotor, and one that is too weak."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+SCENARIO = """
+title = "small"
+[bearing]
+journal_radius = "50 mm"
+length = "50 mm"
+radial_clearance = "100 um"
+[lubricant]
+viscosity = "0.0277 Pa*s"
+[film]
+inception = "free"
+mesh = { circumferential = 48, axial = 8, cross_film = 8 }
+[operating]
+speed = ["6000 rpm", "9000 rpm"]
+load = "3 kN"
+[rotor]
+mass = "450 kg"
+"""
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch, capsys):
+    from rotorsim import orbit
+    from rotorsim.cli.app import app
+    from rotorsim.orbit import LoadedFilm, ShortBearingForce
+
+    def short(case, speed):
+        del speed
+        force = ShortBearingForce(0.0277, 0.05, 0.05, 1e-4)
+        return LoadedFilm(force, 3000.0, case.bearing, "short bearing")
+
+    # The finite film is solved or mapped for half a minute; the closed form will do here.
+    monkeypatch.setattr(orbit, "loaded_film", short)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "100")
+    (tmp_path / "small.toml").write_text(SCENARIO, encoding="utf-8")
+
+    def call(*arguments: object) -> subprocess.CompletedProcess:
+        words = [str(argument) for argument in arguments]
+        with pytest.raises(SystemExit) as end:
+            app(words, prog_name="rotorsim")
+        said = capsys.readouterr()
+        return subprocess.CompletedProcess(words, end.value.code, said.out, said.err)
+
+    return call
+
+
+@pytest.mark.parametrize("design", ["lqr", "pd"])
+def test_design_without_a_run_in_time(here, design):
+    done = here("control", "small.toml", "--design", design, "--revolutions", "0", "--json")
+    assert done.returncode == 0, done.stderr
+    said = json.loads(done.stdout)
+    assert said["passive"]["growth_rate"] > 0.0 > said["controlled"]["growth_rate"]
+    assert said["critical_mass"] < said["mass"] == 450.0
+    assert np.shape(said["gain"]) == (2, 4)
+    assert said["controlled"]["status"] is None
+    assert said["margins"]["x"]["stable"]
+
+
+def test_bad_arguments(here):
+    for arguments, words in (
+        (("small.toml", "--max-force", "2"), ["--max-force", "2 kN"]),
+        (("small.toml", "--max-force", "0 N"), ["--max-force", "above 0"]),
+        (("small.toml", "--model", "thd"), ["thd", "isothermal"]),
+        (("small.toml", "--speed", "9000"), ["--speed", "rpm"]),
+        (("nowhere.toml",), ["nowhere.toml"]),
+    ):
+        done = here("control", *arguments)
+        assert done.returncode == 2, done.stdout + done.stderr
+        assert "Traceback" not in done.stderr
+        for word in words:
+            assert word in done.stderr
+
+
+def test_held_with_enough_force_and_lost_with_too_little(here):
+    done = here("control", "small.toml", "--max-force", "1 kN", "-o", "figures")
+    assert done.returncode == 0, done.stderr
+    for word in ("passive", "settled", "Margins", "short bearing"):
+        assert word in done.stdout
+    for name in ("root_locus.png", "bode.svg", "control_orbits.png"):
+        assert Path("figures", name).stat().st_size > 5000
+    weak = here("control", "small.toml", "--max-force", "20 N", "--disturbance", "30 um", "--json")
+    assert weak.returncode == 1
+    said = json.loads(weak.stdout)
+    assert not said["holds"]
+    assert said["controlled"]["growth_rate"] < 0.0
+    assert "settled" not in (said["controlled"]["status"], said["passive"]["status"])
+    assert said["passive"]["max_eccentricity_ratio"] > 0.6
+    assert said["largest_force"] == pytest.approx(20.0)
+    assert "does not hold the rotor" in weak.stderr
