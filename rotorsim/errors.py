@@ -37,7 +37,7 @@ class InputError(RotorsimError, ValueError):
         value: object = None,
     ) -> None:
         self.message = message
-        self.source = None if source is None else str(source)
+        self.source: str | None = None if source is None else str(source)
         self.key = key
         self.value = value
         where = [part for part in (self.source, key) if part]

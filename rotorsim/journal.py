@@ -40,7 +40,7 @@ class Journal:
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.path = Path(path)
+        self.path: Path = Path(path)
         self._whole: str | None = None
         self._points = self._read()
 

@@ -17,7 +17,7 @@ from .reproduce_command import reproduce
 from .run_command import run
 from .stability_command import stability
 
-app = typer.Typer(
+app: typer.Typer = typer.Typer(
     name="rotorsim",
     no_args_is_help=True,
     pretty_exceptions_enable=False,

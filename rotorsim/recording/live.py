@@ -42,7 +42,7 @@ class LiveView:
 
     def __init__(self, title: str, stream: rr.RecordingStream | None = None) -> None:
         self.title = title
-        self.stream = stream or _viewer_stream()
+        self.stream: rr.RecordingStream = stream or _viewer_stream()
         self.last: dict[str, OrbitTrack] = {}
 
     def __enter__(self) -> LiveView:

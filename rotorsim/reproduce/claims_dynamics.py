@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .claim import (
@@ -36,7 +38,7 @@ C100, C125, C150 = CLEARANCES
 AXES = "Depends on the axes, which the paper does not name: see there"
 
 
-def ratio(above: str, below: str, model: str):
+def ratio(above: str, below: str, model: str) -> Callable[[PaperResults], Evidence]:
     """Ratio of two coefficients, the one farthest from 1 over clearances at 15 000 rpm."""
 
     def check(r: PaperResults) -> Evidence:
@@ -46,7 +48,7 @@ def ratio(above: str, below: str, model: str):
     return check
 
 
-def largest_reduction(names: tuple[str, ...]):
+def largest_reduction(names: tuple[str, ...]) -> Callable[[PaperResults], Evidence]:
     """Largest reduction among coefficients and clearances at 15 000 rpm [%]."""
 
     def check(r: PaperResults) -> Evidence:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from .claim import (
     EXACT,
     FACTOR,
@@ -36,7 +38,7 @@ LIQUID_NOTE = "Friction of the oil alone: the ruptured sector counts with its li
 WHOLE_NOTE = "Friction over the whole sector, as in the paper's Eq. 17"
 
 
-def widening(model: str, friction: str):
+def widening(model: str, friction: str) -> Callable[[PaperResults], Evidence]:
     """Reduction of friction from 100 to 150 um [%], the largest over speed."""
 
     def percent(r: PaperResults) -> Evidence:
@@ -57,7 +59,7 @@ def largest_friction(r: PaperResults) -> Evidence:
     return share(outcomes, "thermal models")
 
 
-def friction_coefficient(part: float):
+def friction_coefficient(part: float) -> Callable[[PaperResults], Evidence]:
     """Friction of the whole sector over `part` of the film force."""
 
     def ratio(r: PaperResults) -> float:

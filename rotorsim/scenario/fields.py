@@ -49,7 +49,7 @@ def _viscosity(text: object) -> Viscosity:
         return Viscosity(_signed(text, "dynamic viscosity", "0.0277 Pa*s", "positive"), False)
 
 
-dynamic_or_kinematic = PlainValidator(_viscosity)
+dynamic_or_kinematic: PlainValidator = PlainValidator(_viscosity)
 """Text with a unit of dynamic or kinematic viscosity."""
 
 
@@ -102,9 +102,11 @@ def _listed(value: object) -> object:
     return entries
 
 
-one_or_more = BeforeValidator(_listed)
+one_or_more: BeforeValidator = BeforeValidator(_listed)
 """One value, or a list of at least one."""
-range_or_list = BeforeValidator(lambda value: value if isinstance(value, dict) else _listed(value))
+range_or_list: BeforeValidator = BeforeValidator(
+    lambda value: value if isinstance(value, dict) else _listed(value)
+)
 """A table ``{ start, stop, count }``, or one value, or a list."""
 
 
@@ -117,5 +119,5 @@ def _as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, list) else value
 
 
-as_tuple = BeforeValidator(_as_tuple)
+as_tuple: BeforeValidator = BeforeValidator(_as_tuple)
 """TOML's arrays become tuples of a fixed length."""

@@ -5,7 +5,7 @@ Only what a single entry can tell is checked here; what entries say together is 
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag
 
@@ -56,7 +56,9 @@ MAX_COUNT = 100_000
 class Table(BaseModel):
     """A TOML table: unknown keys refused, nothing converted silently."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config: ClassVar[ConfigDict] = ConfigDict(
+        strict=True, extra="forbid", frozen=True, allow_inf_nan=False
+    )
 
 
 class GrooveTable(Table):
