@@ -102,7 +102,7 @@ def stability_plane(
     if len(figure.axes) == 1:
         # Two of the long labels side by side must fit the width.
         long = sum(len(str(handle.get_label())) > 30 for handle in shown) > 1
-        size = 6.8 if long else 8.0
+        size = 7.0 if long else None
         figure.legend(handles=shown, loc="outside lower center", ncols=2, fontsize=size)
     else:
         ax.legend(handles=shown, loc="upper right", fontsize=6.5)
