@@ -85,5 +85,7 @@ class _Lines:
             return
         self.last = now
         spent = now - self.start
-        left = f", about {spent / done * (total - done):.0f} s left" if done < total else ""
+        # The first points wait for the workers and for compilation: no measure of the rest.
+        known = 10 * done >= total and done < total
+        left = f", about {spent / done * (total - done):.0f} s left" if known else ""
         self.output.note(f"film points {done}/{total} after {spent:.0f} s{left}")

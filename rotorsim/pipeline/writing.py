@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -87,11 +87,36 @@ def map_pictures(results: Results) -> list[MapPicture]:
     ]
 
 
+def conclusion(facts: dict[str, Any]) -> list[str]:
+    """Say what the orbits at constant speed show of heating; nothing without both models."""
+    rates = {
+        row["thermal_model"]: row
+        for row in facts["orbits"]
+        if row["kind"] == "constant speed" and row["growth_rate"] is not None
+    }
+    cold, hot = rates.get("isothermal"), rates.get("thd")
+    if cold is None or hot is None:
+        return []
+    mass = "" if facts["rotor_mass"] is None else f" with {facts['rotor_mass']:.4g} kg per bearing"
+    verdicts = [
+        f"{'grows' if row['growth_rate'] > 0.0 else 'decays'} ({row['growth_rate']:+.3g} 1/s)"
+        for row in (cold, hot)
+    ]
+    lines = [
+        f"At **{hot['speed'][0] * RPM:.0f} rpm**{mass} the orbit **{verdicts[0]}** if heating is "
+        f"neglected and **{verdicts[1]}** with it.",
+        "",
+    ]
+    if cold["growth_rate"] < 0.0 < hot["growth_rate"]:
+        lines += ["The rotor that an isothermal calculation calls stable is unstable.", ""]
+    return lines
+
+
 def markdown_summary(results: Results) -> str:
     """The closing words as Markdown, for the recording."""
     facts = summary(results, {})
     counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
-    lines = [f"Film points: {counted}.", ""]
+    lines = [*conclusion(facts), f"Film points: {counted}.", ""]
     for row in facts["heating"]:
         lines += [
             f"## c = {row['radial_clearance'] * 1e6:.4g} um, {row['speed'] * RPM:.0f} rpm",
