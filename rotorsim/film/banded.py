@@ -65,7 +65,8 @@ def column_order(linked: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]
     """Columns in band order, and whether the ring had to be folded."""
     n = active.shape[0]
     used = active.any(axis=1)
-    joined = (linked[0] & active & np.roll(active, 1, axis=0)).any(axis=1)  # to the column before
+    before = np.roll(active, 1, axis=0)
+    joined = np.any(linked[0] & active & before, axis=1)  # to the column before
     cuts = np.flatnonzero(~joined)
     if cuts.size:
         order = (cuts[0] + np.arange(n)) % n

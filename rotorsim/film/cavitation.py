@@ -8,7 +8,7 @@ finitely many steps, since the matrix is an M-matrix.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -139,13 +139,13 @@ def coarse_guess(operator: FilmOperator, source: Array) -> Flags:
 def _coarsened(operator: FilmOperator) -> FilmOperator:
     """The operator on pairs of cells: faces in a row carry together, over twice the distance."""
 
-    def outer_faces(field: Array) -> tuple[Array, Array, Array, Array]:
+    def outer_faces(field: NDArray[Any]) -> tuple[NDArray[Any], ...]:
         return field[0, 0::2], field[1, 1::2], field[2, :, 0::2], field[3, :, 1::2]
 
-    def along(face: Array) -> Array:  # west and east faces: two rows of cells
+    def along(face: NDArray[Any]) -> NDArray[Any]:  # west and east faces: two rows of cells
         return face.reshape(face.shape[0], -1, 2)
 
-    def around(face: Array) -> Array:  # south and north faces: two columns
+    def around(face: NDArray[Any]) -> NDArray[Any]:  # south and north faces: two columns
         return face.reshape(-1, 2, face.shape[1]).transpose(0, 2, 1)
 
     west, east, south, north = outer_faces(operator.conductance)

@@ -16,6 +16,7 @@ def kernel(function: Function) -> Function:
     Division follows numpy (no exception); sums may be reordered and fused, nothing else is relaxed,
     so that NaN and infinities still behave.
     """
-    return numba.njit(
+    compiled: Any = numba.njit(
         cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, nogil=True
     )(function)
+    return compiled

@@ -59,7 +59,7 @@ def largest_friction(r: PaperResults) -> Evidence:
     return share(outcomes, "thermal models")
 
 
-def friction_coefficient(part: float) -> Callable[[PaperResults], Evidence]:
+def friction_coefficient(part: float) -> Callable[[PaperResults], float]:
     """Friction of the whole sector over `part` of the film force."""
 
     def ratio(r: PaperResults) -> float:
