@@ -1,0 +1,52 @@
+"""The shipped table: readable, its scenario's own, and what the solver gives today."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import rotorsim as rs
+from rotorsim.stability import threshold_speeds
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def table() -> rs.CoefficientTable:
+    return rs.CoefficientTable.load(ROOT / "coefficients" / "dal.nc")
+
+
+def test_it_is_the_shipped_scenarios(table):
+    scenario = rs.load_scenario(ROOT / "scenarios" / "dal.toml")
+    assert table.dataset.attrs["scenario_sha256"] == scenario.sha256
+    assert dict(table.dataset.sizes) == {"thermal_model": 2, "radial_clearance": 3, "speed": 30}
+
+
+@pytest.mark.parametrize("model", ["isothermal", "thd"])
+def test_it_is_what_the_solver_gives(table, model):
+    scenario = rs.load_scenario(ROOT / "scenarios" / "dal.toml")
+    speed = float(scenario.speeds[-1])
+    point = rs.solve(scenario, speed=speed, radial_clearance=125e-6, thermal_model=model)
+    stored = table.at(speed, thermal_model=model, radial_clearance=125e-6)
+    size = np.abs(point.stiffness).max()
+    np.testing.assert_allclose(stored.stiffness, point.stiffness, atol=1e-4 * size)
+    np.testing.assert_allclose(stored.damping, point.damping, rtol=1e-3)
+
+
+def test_pinned_thresholds(table):
+    """Threshold speeds of the paper's rotor, 1200 kg a bearing [rpm]; heating lowers every one."""
+    wanted = {
+        ("isothermal", 125e-6): 9617.0,
+        ("isothermal", 150e-6): 5565.0,
+        ("thd", 100e-6): 12422.0,
+        ("thd", 125e-6): 7876.0,
+        ("thd", 150e-6): 5060.0,
+    }
+    for (model, clearance), rpm in wanted.items():
+        one = table.select(thermal_model=model, radial_clearance=clearance)
+        found = threshold_speeds(one, mass=1200.0)
+        assert [t.speed * 30.0 / np.pi for t in found] == pytest.approx([rpm], rel=1e-3)
+    one = table.select(thermal_model="isothermal", radial_clearance=100e-6)
+    assert not threshold_speeds(one, mass=1200.0)
