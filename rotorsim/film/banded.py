@@ -64,7 +64,7 @@ def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
 def column_order(linked: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
     """Columns in band order, and whether the ring had to be folded."""
     n = active.shape[0]
-    used = active.any(axis=1)
+    used: Flags = np.logical_or.reduce(active, axis=1)
     before = np.roll(active, 1, axis=0)
     joined = np.any(linked[0] & active & before, axis=1)  # to the column before
     cuts = np.flatnonzero(~joined)
