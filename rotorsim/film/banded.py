@@ -109,21 +109,40 @@ def _cholesky(band):
     for them longest of all where every core is at work.
     """
     size, width = band.shape[0], band.shape[1] - 1
-    for c in range(size):
-        column = band[c]
-        if not column[0] > 0.0:
-            return c + 1
-        root = np.sqrt(column[0])
-        column[0] = root
+    c = 0
+    while c < size:
+        # Two columns at a time: what lies to the right is then read and written half as often.
+        first = band[c]
         below = min(width, size - 1 - c)
+        if not first[0] > 0.0:
+            return c + 1
+        root = np.sqrt(first[0])
+        first[0] = root
         for r in range(1, below + 1):
-            column[r] /= root
-        for j in range(1, below + 1):
-            factor = column[j]
-            if factor != 0.0:
+            first[r] /= root
+        if c + 1 == size:
+            break
+        second = band[c + 1]
+        under = min(width, size - 2 - c)
+        factor = first[1] if below >= 1 else 0.0
+        for r in range(1, below + 1):
+            second[r - 1] -= factor * first[r]
+        if not second[0] > 0.0:
+            return c + 2
+        root = np.sqrt(second[0])
+        second[0] = root
+        for r in range(1, under + 1):
+            second[r] /= root
+        for j in range(2, under + 2):
+            left = first[j] if j <= below else 0.0
+            right = second[j - 1]
+            if left != 0.0 or right != 0.0:
                 target = band[c + j]
                 for r in range(j, below + 1):
-                    target[r - j] -= factor * column[r]
+                    target[r - j] -= left * first[r] + right * second[r - 1]
+                for r in range(max(j, below + 1), under + 2):
+                    target[r - j] -= right * second[r - 1]
+        c += 2
     return 0
 
 
