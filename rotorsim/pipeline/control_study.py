@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..model import Case
+from ..scenario.settings import ActuatorSettings, Design
 from ..stability.actuator import ActuatedForce
 from ..stability.whirl import WhirlThreshold, rigid_threshold
 from ..table import Coefficients
+from .actuators import design_feedback
 
 if TYPE_CHECKING:
     import control
@@ -22,15 +23,6 @@ if TYPE_CHECKING:
     from ..stability.control import LoopMargins, StateFeedback
 
 Array = NDArray[np.float64]
-
-
-class Design(StrEnum):
-    """How the feedback is found."""
-
-    LQR = "lqr"
-    """Full state feedback, optimal for a weighting of displacement against force."""
-    PD = "pd"
-    """Each axis by itself: the least derivative gain that reaches the wanted decay rate."""
 
 
 @dataclass(frozen=True)
@@ -144,7 +136,7 @@ def study_control(
     """
     from ..orbit import find_equilibrium, linearize_force, loaded_film
     from ..orbit.forces import CompilableForce
-    from ..stability.control import design_lqr, design_pd, loop_margins
+    from ..stability.control import loop_margins
     from ..stability.statespace import state_space
 
     wishes = wishes or ControlWishes()
@@ -153,13 +145,13 @@ def study_control(
     linear = Coefficients(*linearize_force(film.force, *rest, speed), speed)
     system = state_space(linear, mass)
     clearance = case.bearing.radial_clearance
-    if wishes.design is Design.LQR:
-        full = wishes.max_force if math.isfinite(wishes.max_force) else 0.1 * film.load
-        scale = wishes.displacement_scale or 0.01 * clearance
-        feedback = design_lqr(system, scale, full, max_force=wishes.max_force)
-    else:
-        rate = 0.02 * speed if wishes.decay_rate is None else wishes.decay_rate
-        feedback = design_pd(linear, mass, -rate, max_force=wishes.max_force)
+    settings = ActuatorSettings(
+        design=wishes.design,
+        force_limit=wishes.max_force,
+        displacement_scale=wishes.displacement_scale,
+        decay_ratio=None if wishes.decay_rate is None else wishes.decay_rate / speed,
+    )
+    feedback = design_feedback(settings, linear, mass, clearance, film.load)
     disturbance = wishes.disturbance or 0.02 * clearance
     orbits: list[Orbit | None] = [None, None]
     largest = None

@@ -122,8 +122,9 @@ def compute(
         settings, _ = orbit_steps.orbit_settings(scenario)
         ramped = isinstance(settings.speed, SpeedRamp)
         # A nonlinear film is simulated as the scenario says and no further: it takes its time.
-        linear = settings.force is OrbitForce.LINEAR
-        for companion in (False, True) if linear else (False,):
+        # An actuator is designed for one speed: no run-up beside it.
+        alone = settings.force is not OrbitForce.LINEAR or settings.actuator is not None
+        for companion in (False,) if alone else (False, True):
             for model in scenario.thermal_models:
                 kind = "changing" if ramped != companion else "constant"
                 label = f"orbit at {kind} speed, {model.value}"
@@ -209,10 +210,13 @@ def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
     for point in results.points:
         counts[point.status.value] = counts.get(point.status.value, 0) + 1
     mass = results.rotor_mass
+    settings = results.scenario.orbit
+    passive = settings is None or settings.actuator is None
     rows = []
     for orbit in results.orbits:
         row = describe_orbit(orbit)
-        if row["kind"] == "constant speed" and mass is not None:
+        # the eigenvalues are those of the film alone
+        if row["kind"] == "constant speed" and mass is not None and passive:
             row["eigenvalue_growth_rate"] = expected_growth(results.table, orbit, mass)
         rows.append(row)
     return {

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..scenario.settings import OrbitForce, SpeedRamp
+from .actuators import largest_force, with_actuator
 
 if TYPE_CHECKING:
     from ..model import Bearing
@@ -72,7 +73,11 @@ def simulate_orbit(
         table = tabulate(scenario)
     problem = orbit_problem(scenario, table, thermal_model=thermal_model, schedule=schedule)
     keep = MAX_SAMPLES // problem.samples_per_revolution
-    return simulate(problem, consume=consume, keep_revolutions=keep)
+    orbit = simulate(problem, consume=consume, keep_revolutions=keep)
+    most = largest_force(problem.force, orbit)
+    if most is None:
+        return orbit
+    return replace(orbit, message=f"{orbit.message}; largest actuator force {most:.4g} N")
 
 
 def orbit_problem(
@@ -94,12 +99,14 @@ def orbit_problem(
             )
         model = thermal_model or preferred_model(table)
         force, bearing = linear_force(scenario, table, model)
-        load, note = 0.0, ""
+        # the coefficients hold about the loaded position, so that the load itself is left out
+        load, note, carried = 0.0, "", _carried_load(table, model, settings, schedule.speeds[0])
     else:
         model = thermal_model or preferred_scenario_model(scenario)
         film = nonlinear_film(scenario, model, max(schedule.speeds))
         force, bearing, load, note = film.force, film.bearing, film.load, film.note
-    return OrbitProblem(
+        carried = load
+    problem = OrbitProblem(
         force=force,
         rotor=rotor_model(rotor, unbalance=settings.unbalance),
         schedule=schedule,
@@ -114,6 +121,19 @@ def orbit_problem(
         kind=settings.kind.value,
         note=note,
     )
+    if settings.actuator is None:
+        return problem
+    return with_actuator(problem, settings.actuator, rotor.mass, carried)
+
+
+def _carried_load(
+    table: CoefficientTable, model: str, settings: OrbitSettings, speed: float
+) -> float | None:
+    """Static load of the table [N]; None where it does not say."""
+    if settings.actuator is None:
+        return None
+    clearance = settings.radial_clearance
+    return table.at(speed, thermal_model=model, radial_clearance=clearance).load
 
 
 def linear_force(

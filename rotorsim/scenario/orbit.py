@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..model import Bearing
 from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
+from .actuator import actuator_settings
 from .schema import LoadTable, OrbitTable, ScenarioTables, SpeedRampTable
 from .settings import OrbitForce, OrbitKind, OrbitSettings, RotorKind, SpeedRamp, Station
 
@@ -16,7 +18,10 @@ DEFAULT_REVOLUTIONS = 60
 
 
 def orbit_settings(
-    tables: ScenarioTables, clearance_choices: tuple[float, ...], tabulated: NDArray[np.float64]
+    tables: ScenarioTables,
+    bearing: Bearing,
+    clearance_choices: tuple[float, ...],
+    tabulated: NDArray[np.float64],
 ) -> OrbitSettings | None:
     """Read what to simulate in the time domain."""
     table = tables.orbit
@@ -55,6 +60,7 @@ def orbit_settings(
         loads=tuple(_loads(table, tables.rotor.kind)),
         samples_per_revolution=table.samples_per_revolution,
         steady_only=table.steady_only,
+        actuator=actuator_settings(tables, bearing),
     )
 
 

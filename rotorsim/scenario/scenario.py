@@ -228,7 +228,7 @@ def _parts(tables: ScenarioTables, text: str, path: Path | None) -> dict[str, An
         "speeds": speeds,
         "target": build.target(tables.operating),
         "rotor": build.rotor(tables),
-        "orbit": orbit_settings(tables, clearances, speeds),
+        "orbit": orbit_settings(tables, bearings[0], clearances, speeds),
         "stability": build.stability_settings(tables),
         "tolerances": build.tolerance_settings(tables),
     }

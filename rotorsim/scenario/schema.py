@@ -32,7 +32,7 @@ from .fields import (
     range_or_list,
     written_as,
 )
-from .settings import BearingProfile, OrbitForce, OrbitKind, RotorKind, Station
+from .settings import BearingProfile, Design, OrbitForce, OrbitKind, RotorKind, Station
 from .tolerances import DEFAULT_SAMPLES, Distribution, Spread, spread_of
 
 Length = Annotated[float, quantity("length", "50 mm")]
@@ -257,6 +257,19 @@ class BaseShockTable(Table):
     start: Instant = 0.0
 
 
+class ActuatorTable(Table):
+    """``[orbit.actuator]``; which keys go with which design: `actuator.actuator_settings`."""
+
+    on: bool = True
+    design: Annotated[Design, choice(Design)] = Design.LQR
+    force_limit: Annotated[float, quantity("force", "1 kN")] | None = None
+    displacement_scale: Annotated[float, quantity("length", "0.5 um")] | None = None
+    force_scale: Annotated[float, quantity("force", "100 N")] | None = None
+    stiffness: Annotated[float, quantity("stiffness", "5 MN/m", "not_negative")] | None = None
+    damping: Annotated[float, quantity("damping", "20 kN*s/m", "not_negative")] | None = None
+    decay_ratio: float | None = Field(default=None, ge=0.0, le=1.0, examples=[0.02])
+
+
 class OrbitTable(Table):
     """``[orbit]``."""
 
@@ -280,6 +293,7 @@ class OrbitTable(Table):
     harmonic: HarmonicTable | None = None
     base_motion: BaseMotionTable | None = None
     base_shock: BaseShockTable | None = None
+    actuator: ActuatorTable | None = None
     samples_per_revolution: int = Field(default=64, ge=16, le=4096)
     steady_only: bool = False
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -35,6 +36,15 @@ class OrbitKind(StrEnum):
     RUN_UP = "run_up"
     COAST_DOWN = "coast_down"
     BASE_MOTION = "base_motion"
+
+
+class Design(StrEnum):
+    """How an actuator's feedback is found."""
+
+    LQR = "lqr"
+    """Full state feedback, optimal for a weighting of displacement against force."""
+    PD = "pd"
+    """Each axis by itself: the least derivative gain that reaches the wanted decay rate."""
 
 
 class Station(StrEnum):
@@ -78,6 +88,36 @@ class SpeedRamp:
 
 
 @dataclass(frozen=True)
+class ActuatorSettings:
+    """A magnetic actuator at the journal, about the equilibrium of the film alone.
+
+    Parameters
+    ----------
+    design : Design
+    force_limit : float
+        Saturation of each axis [N].
+    displacement_scale : float or None
+        LQR: a displacement as bad as `force_scale` [m]; None: a hundredth of the clearance.
+    force_scale : float or None
+        LQR [N]; None: the limit, without one a tenth of the load.
+    stiffness : float
+        PD: proportional gain [N/m].
+    damping : float or None
+        PD: derivative gain [N s/m]; None: the least that reaches `decay_ratio`.
+    decay_ratio : float or None
+        PD: decay rate of the slowest motion over the shaft's speed; None: a fiftieth.
+    """
+
+    design: Design = Design.LQR
+    force_limit: float = math.inf
+    displacement_scale: float | None = None
+    force_scale: float | None = None
+    stiffness: float = 0.0
+    damping: float | None = None
+    decay_ratio: float | None = None
+
+
+@dataclass(frozen=True)
 class OrbitSettings:
     """What to simulate in the time domain.
 
@@ -102,6 +142,8 @@ class OrbitSettings:
     samples_per_revolution : int
     steady_only : bool
         Figures leave the transient out.
+    actuator : ActuatorSettings or None
+        None: there is none, or it is switched off.
     """
 
     radial_clearance: float
@@ -116,6 +158,7 @@ class OrbitSettings:
     loads: tuple[Load, ...] = ()
     samples_per_revolution: int = 64
     steady_only: bool = False
+    actuator: ActuatorSettings | None = None
 
 
 @dataclass(frozen=True)

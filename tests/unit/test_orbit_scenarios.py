@@ -7,8 +7,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 from rotorsim.errors import InputError, ScenarioError
+from rotorsim.model import Cavitation, Inception
 from rotorsim.model.loads import BaseMotion, BaseShock, HarmonicForce, StepForce
 from rotorsim.model.rotor import JeffcottRotor, rigid_mass
 from rotorsim.orbit import (
@@ -17,6 +19,7 @@ from rotorsim.orbit import (
     SolvedFilmForce,
     SpeedSchedule,
     analyse,
+    can_be_mapped,
     concatenate,
     orbit_ellipse,
     simulate_pieces,
@@ -25,6 +28,9 @@ from rotorsim.pipeline import simulate_orbit
 from rotorsim.pipeline.orbits import orbit_problem
 from rotorsim.pipeline.summary import describe_orbit
 from rotorsim.scenario import OrbitKind, Scenario, load_scenario
+from rotorsim.scenario.settings import ActuatorSettings, Design
+from rotorsim.stability.matrices import state_matrix
+from rotorsim.sweep import tabulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SHIPPED = sorted(SCENARIOS.glob("orbit_*.toml"))
@@ -247,6 +253,130 @@ def test_shipped_orbits_say_what_is_seen_and_run(path):
         assert np.all(begin.min_film > 0.0)
 
 
-def test_ten_orbits_are_shipped():
+def test_an_orbit_of_every_kind_is_shipped():
     kinds = {load_scenario(path).orbit.kind for path in SHIPPED}  # type: ignore[union-attr]
     assert kinds == set(OrbitKind)
+
+
+# -- actuator -------------------------------------------------------------------------------------
+
+HEAVY = '[rotor]\nmass = "120 kg"\n'
+START = 'speed = "12000 rpm"\ninitial_displacement = ["2 um", "0 um"]\n'
+
+
+def actuated(lines: str, orbit: str = START, rotor: str = HEAVY, base: str = BASE) -> Scenario:
+    return scenario(f"{orbit}[orbit.actuator]\n{lines}\n", rotor, base)
+
+
+def test_an_actuator_is_read_in_si():
+    read = actuated('design = "lqr"\nforce_limit = "1 kN"\ndisplacement_scale = "2 um"').orbit
+    assert read is not None
+    assert read.actuator == ActuatorSettings(Design.LQR, 1000.0, 2e-6)
+    read = actuated('design = "pd"\nstiffness = "5 MN/m"\ndamping = "20 kN*s/m"').orbit
+    assert read is not None
+    assert read.actuator == ActuatorSettings(Design.PD, stiffness=5e6, damping=20e3)
+    for lines in ("", "on = true"):
+        read = actuated(lines).orbit
+        assert read is not None
+        assert read.actuator == ActuatorSettings()
+    read = actuated('on = false\nforce_limit = "1 kN"').orbit
+    assert read is not None
+    assert read.actuator is None
+
+
+RAMP = 'speed = { start = "6000 rpm", stop = "9000 rpm", duration = "1 s" }\n'
+WRONG_ACTUATORS = [
+    ('design = "pid"', START, HEAVY, BASE, "design", '"lqr", "pd"'),
+    ('force_limit = "1 kg"', START, HEAVY, BASE, "force_limit", "force"),
+    ('force_limit = "0 N"', START, HEAVY, BASE, "force_limit", "above 0"),
+    ("gain = 3", START, HEAVY, BASE, "gain", "force_limit"),
+    ('on = "yes"', START, HEAVY, BASE, "on", "true or false"),
+    ('damping = "1 kN*s/m"', START, HEAVY, BASE, "damping", 'design = "pd"'),
+    ('design="pd"\nforce_scale="1 N"', START, HEAVY, BASE, "force_scale", '"lqr"'),
+    (
+        'design = "pd"\ndamping = "1 kN*s/m"\ndecay_ratio = 0.1',
+        START,
+        HEAVY,
+        BASE,
+        "decay_ratio",
+        "damping",
+    ),
+    ("", RAMP, HEAVY, BASE, "", "one speed, not a ramp"),
+    ("", START, JEFFCOTT, BASE, "", "rigid"),
+    ("", f"{START}static_load = false\n", HEAVY, BASE, "", "static load"),
+    ("", START, HEAVY, BASE.replace('"free"', '"max_film"'), "", "inception"),
+    ("", START, HEAVY, BASE.replace("[film]", '[film]\ncavitation = "jfo"'), "", "cavitation"),
+    (
+        "",
+        START,
+        HEAVY,
+        BASE.replace("[lub", 'tilt = ["0.1 mm/m", "0 mm/m"]\n[lub'),
+        "",
+        "a plain bore",
+    ),
+]
+
+
+@pytest.mark.parametrize(("lines", "orbit", "rotor", "base", "key", "words"), WRONG_ACTUATORS)
+def test_an_actuator_that_does_not_fit_is_refused(lines, orbit, rotor, base, key, words):
+    with pytest.raises(ScenarioError) as caught:
+        actuated(lines, orbit, rotor, base)
+    assert caught.value.key == f"orbit.actuator.{key}".rstrip(".")
+    assert words in str(caught.value)
+
+
+def test_a_film_whose_actuator_is_accepted_has_a_map():
+    for cavitation in Cavitation:
+        for inception in Inception:
+            film = f'[film]\ncavitation = "{cavitation.value}"\ninception = "{inception.value}"'
+            base = BASE.replace('[film]\ninception = "free"', film)
+            try:
+                case = Scenario.from_text(base).case(50e-6, "isothermal")
+            except ScenarioError:
+                continue
+            if can_be_mapped(case):
+                actuated("", base=base)
+            else:
+                with pytest.raises(ScenarioError, match="comes from a map"):
+                    actuated("", base=base)
+
+
+@pytest.mark.parametrize("design", ["lqr", "pd"])
+def test_an_actuator_brings_to_rest_what_whirls_without_it(design):
+    run = f"{START}revolutions = 60\n"
+    lines = f'design = "{design}"\nforce_limit = "100 N"\n'
+    free = simulate_orbit(actuated(f"{lines}on = false", run))
+    held = simulate_orbit(actuated(lines, run))
+    away = [np.hypot(o.x - o.equilibrium[0], o.y - o.equilibrium[1]) for o in (free, held)]
+    last = slice(-10 * 64, None)
+    assert away[0][last].max() > 2.0 * away[0][0]
+    assert away[1][last].max() < 0.05 * away[1][0]
+    assert held.equilibrium == pytest.approx(free.equilibrium, abs=1e-12)
+    assert held.status is OrbitStatus.SETTLED
+    assert "actuator limited to 100 N per axis; largest actuator force" in held.message
+
+
+def test_the_actuator_never_gives_more_than_its_limit():
+    held = simulate_orbit(actuated('force_limit = "5 N"', f"{START}revolutions = 5\n"))
+    assert held.message.endswith("largest actuator force 5 N")
+
+
+def test_an_actuator_on_linear_coefficients_decays_as_its_closed_loop():
+    speed = 12000.0 * RPM
+    text = (
+        f'{BASE}{HEAVY}[orbit]\nspeed = "12000 rpm"\nrevolutions = 30\n'
+        'initial_displacement = ["0.5 um", "0 um"]\n'
+        '[orbit.actuator]\ndesign = "pd"\nstiffness = "2 MN/m"\ndamping = "30 kN*s/m"\n'
+    )
+    one = Scenario.from_text(text)
+    table = tabulate(one, workers=1)
+    film = table.at(speed, thermal_model="isothermal", radial_clearance=50e-6)
+    stiffness, damping = film.stiffness, film.damping
+    held = simulate_orbit(one, table)
+    passive = np.linalg.eigvals(state_matrix(stiffness, damping, 120.0)).real.max()
+    k, c = stiffness + 2e6 * np.eye(2), damping + 3e4 * np.eye(2)
+    # exact: the matrix exponential of the closed loop
+    exact = expm(state_matrix(k, c, 120.0) * held.t[640]) @ [0.5e-6, 0.0, 0.0, 0.0]
+    x0, y0 = held.equilibrium
+    assert (held.x[640] - x0, held.y[640] - y0) == pytest.approx(exact[:2], abs=1e-5 * 0.5e-6)
+    assert passive > 0.0 > np.linalg.eigvals(state_matrix(k, c, 120.0)).real.max()
