@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from .checks import regime_warnings
 from .errors import InputError
 from .film.banded import NoFilmError, SingularFilmError
+from .film.flow import film_flow
 from .film.following import following_stiffness
 from .film.heat import heat_totals, wall_temperatures
 from .film.linearized import linearize
-from .film.losses import friction_force, liquid_fraction, peak, side_flow
+from .film.losses import friction_force, peak, side_flow
 from .film.solution import FilmSolution, WarmStart, solve_film
 from .model import Case, LoadTarget, ThermalModel, ViscosityResponse
 from .operating_point import FilmFields, HeatBalance, OperatingPoint
@@ -137,7 +138,7 @@ def operating_point(
     load = float(np.hypot(*state.force))
     clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
     viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    fraction = liquid_fraction(problem, state)
+    fraction = liquid_fraction(solution)
     friction = friction_force(problem, state, fraction)
     hottest, mean = _temperatures(solution, fraction)
     thinnest = min_film_thickness(solution)
@@ -212,10 +213,7 @@ def min_film_thickness(solution: FilmSolution) -> float:
     bearing, state = solution.problem.bearing, solution.state
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance - math.hypot(*state.position)
-    film = ~state.operator.held
-    thickness = state.thickness
-    parts = (thickness.center, thickness.west, thickness.east, thickness.south, thickness.north)
-    return float(min(part[film].min() for part in parts))
+    return state.thickness.minimum(~state.operator.held)
 
 
 def _rotation(angle: float) -> Array:
@@ -225,6 +223,13 @@ def _rotation(angle: float) -> Array:
 
 def _ratio(above: float, below: float) -> float:
     return above / below if below > 0.0 else math.inf
+
+
+def liquid_fraction(solution: FilmSolution) -> Array:
+    """What the oil fills of each cell, (n, m)."""
+    if solution.thermal is not None:
+        return solution.thermal.energy.flow.liquid_fraction
+    return film_flow(solution.state, solution.problem.surface_speed).liquid_fraction
 
 
 def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float]:

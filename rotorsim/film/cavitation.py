@@ -111,8 +111,7 @@ def solve_pressure(
     solution = _active_set(operator, source, film, guess & film)
     if region is None:
         return solution
-    allowed = np.empty_like(film)
-    allowed[:] = film
+    allowed = film.copy()
     _one_stretch(solution.pressure, operator.held, operator.linked[0], region, allowed)
     if (solution.full & ~allowed).any():
         again = _active_set(operator, source, allowed, solution.full & allowed)
@@ -217,7 +216,7 @@ def _active_set(
         factor = factor_operator(operator, full)
     if factor is None or not full.any():
         # No cell is pushed: the whole film is ruptured, which is the solution.
-        factor = factor_operator(operator, np.zeros_like(allowed) | (~operator.held))
+        factor = factor_operator(operator, ~operator.held)
         empty = np.zeros_like(allowed)
         nothing = _with_held(operator, np.zeros_like(source))
         return PressureSolution(nothing, nothing, empty, factor, steps, True)

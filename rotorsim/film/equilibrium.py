@@ -140,7 +140,7 @@ class AttitudeSearch:
         self._last = (angle, direction)
         return self.at(angle + step), abs(direction)
 
-    def allowed(self, old: Position, new: Position) -> Position:  # noqa: ARG002
+    def allowed(self, _old: Position, new: Position, /) -> Position:
         """Stay at the given eccentricity."""
         return self.at(math.atan2(new[1], new[0]))
 

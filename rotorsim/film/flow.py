@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .kernels import kernel
 from .layers import LayerIntegrals
-from .operator import FilmOperator
+from .operator import FilmOperator, neighbour
 from .state import FilmState
 
 Array = NDArray[np.float64]
@@ -90,7 +90,7 @@ def film_flow(state: FilmState, surface_speed: float) -> FilmFlow:
 
 
 def _drag_multiplier(operator: FilmOperator, layers: LayerIntegrals) -> Array:
-    """C of the west and east faces: their drag over the shear shares that it is spread on."""
+    """Drag of the west and east faces over the shear shares that it is spread on: their c."""
     share = 1.0 - layers.g
     beside = np.stack([np.roll(share, 1, axis=0), np.roll(share, -1, axis=0)])
     return operator.drag / np.where(operator.linked[:2], 0.5 * (share + beside), share)
@@ -103,23 +103,13 @@ def _pressure_part(
 ):  # fmt: skip
     n, m = pressure.shape
     for i in range(n):  # pressure-driven part of every face
-        before = i - 1 if i > 0 else n - 1
-        after = i + 1 if i < n - 1 else 0
         for j in range(m):
             if held[i, j]:
                 continue
             for face in range(4):
                 sign = 1.0 if face == 1 or face == 3 else -1.0
                 width = dy[j] if face < 2 else dx[i]
-                k, q = i, j
-                if face == 0:
-                    k = before
-                elif face == 1:
-                    k = after
-                elif face == 2:
-                    q = max(j - 1, 0)
-                else:
-                    q = min(j + 1, m - 1)
+                k, q = neighbour(face, i, j, n, m)
                 if not linked[face, i, j]:
                     inside = pressure[i, j] if full[i, j] else 0.0
                     step = sign * (outer[face, i, j] - inside)

@@ -56,11 +56,10 @@ class Thickness:
     south: Array
     north: Array
 
-    @property
-    def minimum(self) -> float:
-        """Smallest thickness met on any face or centre [m]."""
+    def minimum(self, cells: NDArray[np.bool_]) -> float:
+        """Smallest thickness met on any face or centre of `cells` [m]."""
         parts = (self.center, self.west, self.east, self.south, self.north)
-        return float(min(part.min() for part in parts))
+        return float(min(part[cells].min() for part in parts))
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,7 @@ def stations(bearing: Bearing, theta_faces: Array, y_faces: Array) -> Stations:
 
 
 def film_thickness(at: Stations, position: tuple[float, float]) -> Thickness:
-    """H = c - e_x cos(theta) - e_y sin(theta) + lobes, e following the journal's tilt along y."""
+    """Film thickness c - e_x cos(theta) - e_y sin(theta) + lobes, e following the tilt along y."""
     h = np.empty((5, at.cos.shape[1], at.y.size))
     _thickness(
         at.cos, at.sin, at.bore, at.y, at.y_faces, at.tilt[0], at.tilt[1], position[0],

@@ -74,7 +74,7 @@ def _carried(problem: FilmProblem, state: FilmState, flow: FilmFlow) -> Array:
     if problem.thermal.inlet is InletModel.PERIODIC:
         return np.where(np.roll(state.operator.held, 1, axis=0), part, 1.0)
     if problem.mesh.slot.any() or problem.bearing.grooves:
-        part = np.where(flow.inlet & state.operator.linked[0], 1.0, part)
+        part = np.where(flow.inlet & state.operator.linked[WEST], 1.0, part)
     return part
 
 
@@ -119,8 +119,7 @@ def heat_to_bush(energy: EnergyProblem, temperature: Array, walls: WallTemperatu
     """Heat each cell gives to the bush [W], (n, m)."""
     if walls.bush_insulated:
         return np.zeros(walls.bush.shape)
-    flux = 2.0 * energy.conductance * (temperature[:, :, 0] - walls.bush)
-    return np.where(energy.held, 0.0, flux)
+    return 2.0 * energy.conductance * (temperature[:, :, 0] - walls.bush)
 
 
 def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
@@ -174,8 +173,6 @@ def _mixed(
     taken, given, heat, supply = (np.zeros(count) for _ in range(4))
     for face in (WEST, EAST, SOUTH, NORTH):
         open_ = wells[face] >= 0
-        if not open_.any():
-            continue
         into = layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
         number = wells[face][open_]
         arriving, leaving = np.maximum(into, 0.0), np.maximum(-into, 0.0)
@@ -198,7 +195,7 @@ def _mixed(
 
 def _exits(energy: EnergyProblem) -> NDArray[np.bool_]:
     """Cells whose east face leads into a groove, a slot or a re-formed film's inlet."""
-    return (~energy.linked[1] | np.roll(energy.flow.inlet, -1, axis=0)) & ~energy.held
+    return (~energy.linked[EAST] | np.roll(energy.flow.inlet, -1, axis=0)) & ~energy.held
 
 
 def _wells(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
@@ -209,16 +206,23 @@ def _wells(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
     supply = problem.mesh.supply
     grooves = len(problem.bearing.grooves)
     wells = np.full((4, *supply.shape), -1, dtype=np.int64)
-    wells[0] = np.roll(supply, 1, axis=0)
-    wells[1] = np.roll(supply, -1, axis=0)
-    wells[2][:, 1:] = supply[:, :-1]
-    wells[3][:, :-1] = supply[:, 1:]
+    wells[WEST] = np.roll(supply, 1, axis=0)
+    wells[EAST] = np.roll(supply, -1, axis=0)
+    wells[SOUTH][:, 1:] = supply[:, :-1]
+    wells[NORTH][:, :-1] = supply[:, 1:]
     inlet = energy.flow.inlet & (energy.carried < 1.0)
-    wells[0][inlet & (wells[0] < 0)] = grooves
+    wells[WEST][inlet & (wells[WEST] < 0)] = grooves
     after = np.roll(inlet & (np.roll(supply, 1, axis=0) < 0), -1, axis=0)
-    wells[1][after & (wells[1] < 0)] = grooves
+    wells[EAST][after & (wells[EAST] < 0)] = grooves
     wells[:, energy.held] = -1
     return wells
+
+
+def dissipated_power(energy: EnergyProblem) -> float:
+    """Power that the film turns into heat, over the meshed part [W]."""
+    # Summed over the layers: int (z - G)^2/mu = F_2, int (z - G)/mu = 0, int 1/mu = F_0.
+    layers = energy.layers
+    return float(np.sum(energy.heating[2] * layers.f2 + energy.heating[0] * layers.f0))
 
 
 def heat_totals(
@@ -230,15 +234,10 @@ def heat_totals(
     leaving_temperature: Array,
 ) -> HeatTotals:
     """Where the dissipated power goes, over both halves."""
-    # Summed over the layers: int (z - G)^2/mu = F_2, int (z - G)/mu = 0, int 1/mu = F_0.
-    film = ~energy.held
-    total = np.sum(
-        film * (energy.heating[2] * energy.layers.f2 + energy.heating[0] * energy.layers.f0)
-    )
     times = problem.mesh.multiplicity
     enthalpy = _enthalpy_out(energy, temperature, inlet_temperature, leaving_temperature)
     return HeatTotals(
-        dissipation=times * float(total),
+        dissipation=times * dissipated_power(energy),
         enthalpy_out=times * energy.heat_capacity * enthalpy,
         to_bush=times * float(heat_to_bush(energy, temperature, walls).sum()),
         to_shaft=times * heat_to_shaft(energy, temperature, walls.shaft),

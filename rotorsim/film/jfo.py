@@ -95,11 +95,11 @@ def solve_jfo(
             break
         if steps >= MAX_STEPS:
             break
-        # A set seen before means a cycle: from then on change one column of cells at a time.
+        # A set seen before means a cycle: from then on only the worst cells change.
         key = np.packbits(update).tobytes()
         damped = damped or key in seen
         seen.add(key)
-        full = _one_change(full, update, unknown) if damped else update
+        full = _worst_changes(full, update, unknown) if damped else update
     pressure = np.where(full, unknown, 0.0)
     liquid = np.where(full, 1.0, np.maximum(unknown, 0.0))
     liquid[operator.held] = 1.0
@@ -124,8 +124,8 @@ def _carried_fraction(operator: FilmOperator, liquid: Array) -> Array:
     return np.stack([west, liquid])
 
 
-def _one_change(full: Flags, update: Flags, unknown: Array) -> Flags:
-    """Change only the cell that violates its bound most, relative to its kind's worst."""
+def _worst_changes(full: Flags, update: Flags, unknown: Array) -> Flags:
+    """Change only the cells that break their bound at least half as badly as the worst does."""
     wrong = update != full
     pressure_scale = max(float(np.abs(np.where(full, unknown, 0.0)).max()), 1e-300)
     size = np.where(full, -unknown / pressure_scale, unknown - 1.0)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .cavitation import PressureSolution
 from .kernels import kernel
-from .operator import FilmOperator
+from .operator import FilmOperator, neighbour
 
 Array = NDArray[np.float64]
 
@@ -78,21 +78,12 @@ def displacement_sources(operator: FilmOperator, pressure: Array) -> Array:
 def _sources(conductance, linked, outer, face_h, drag, held, cos, sin, pressure, sources):
     n, m = pressure.shape
     for i in range(n):
-        before = i - 1 if i > 0 else n - 1
-        after = i + 1 if i < n - 1 else 0
         for j in range(m):
             if held[i, j]:
                 continue
             for face in range(4):
-                k, q, station = i, j, 0
-                if face == 0:
-                    k, station = before, 1
-                elif face == 1:
-                    k, station = after, 2
-                elif face == 2:
-                    q = max(j - 1, 0)
-                else:
-                    q = min(j + 1, m - 1)
+                k, q = neighbour(face, i, j, n, m)
+                station = face + 1 if face < 2 else 0
                 beyond = pressure[k, q] if linked[face, i, j] else outer[face, i, j]
                 # conductance goes with h^3, drag with h
                 rate = 3.0 * conductance[face, i, j] * (beyond - pressure[i, j])

@@ -6,16 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import RupturedFriction
-from .flow import film_flow
 from .problem import FilmProblem
 from .state import FilmState
 
 Array = NDArray[np.float64]
-
-
-def liquid_fraction(problem: FilmProblem, state: FilmState) -> Array:
-    """What the oil fills of each cell, (n, m)."""
-    return film_flow(state, problem.surface_speed).liquid_fraction
 
 
 def friction_force(problem: FilmProblem, state: FilmState, fraction: Array) -> float:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model import Bearing, FilmSettings, Inception
+from ..model.bearing import angle_between
 from .geometry import bore_offset
 
 Array = NDArray[np.float64]
@@ -26,7 +27,7 @@ GRADED_SHARE = 0.5
 
 @dataclass(frozen=True)
 class FilmMesh:
-    """Cells of the film, in the film frame (see `FilmFrame` in `film.state`).
+    """Cells of the film, in the film frame (see `FilmProblem`).
 
     Attributes
     ----------
@@ -183,8 +184,8 @@ def _film_weight(bearing: Bearing, breaks: list[float], shares: Array) -> Array:
     weights = shares.copy()
     for k in range(len(breaks) - 1):
         middle = 0.5 * (breaks[k] + breaks[k + 1])
-        groove = _groove_at(bearing, middle)
-        if groove is not None and _spans_length(bearing, groove):
+        number = _groove_at(bearing, middle)
+        if number is not None and bearing.spans_length(bearing.grooves[number]):
             weights[k] *= 0.1
     return weights
 
@@ -202,15 +203,9 @@ def _share_out(weights: Array, count: int) -> list[int]:
 
 def _groove_at(bearing: Bearing, theta: float) -> int | None:
     for number, groove in enumerate(bearing.grooves):
-        distance = (theta - groove.center + math.pi) % (2.0 * math.pi) - math.pi
-        if abs(distance) < groove.extent / 2.0:
+        if abs(angle_between(theta, groove.center)) < groove.extent / 2.0:
             return number
     return None
-
-
-def _spans_length(bearing: Bearing, number: int) -> bool:
-    length = bearing.grooves[number].length
-    return length is None or length >= bearing.length * (1.0 - 1e-9)
 
 
 def _supply_cells(
@@ -219,7 +214,7 @@ def _supply_cells(
     """Which cells are groove; axial faces are moved onto the ends of partial grooves."""
     y_faces = y_faces.copy()
     for groove in bearing.grooves:
-        if groove.length is None or groove.length >= bearing.length * (1.0 - 1e-9):
+        if groove.length is None or bearing.spans_length(groove):
             continue
         for end in (groove.length / 2.0, -groove.length / 2.0):
             if y_faces[0] < end < y_faces[-1]:
@@ -244,8 +239,7 @@ def _joints(bearing: Bearing, theta_faces: Array) -> NDArray[np.bool_]:
     for arc in bearing.arcs:
         if arc.preload > 0.0:
             for edge in (arc.start, arc.end):
-                distance = (first - edge + math.pi) % (2.0 * math.pi) - math.pi
-                joint |= np.abs(distance) < 1e-6
+                joint |= np.abs(angle_between(first, edge)) < 1e-6
     return joint
 
 

@@ -177,33 +177,38 @@ def film_operator(
 
 
 @kernel
+def neighbour(face, i, j, n, m):
+    """Cell behind a face: round the bearing the film closes, along it the ends stand for it."""
+    if face == 0:
+        return (i - 1 if i > 0 else n - 1), j
+    if face == 1:
+        return (i + 1 if i < n - 1 else 0), j
+    if face == 2:
+        return i, max(j - 1, 0)
+    return i, min(j + 1, m - 1)
+
+
+@kernel
 def _assemble(
     west, east, south, north, f2, g, linked, gap, dx, dy, surface_speed, conductance, thickness,
     drag,
 ):  # fmt: skip
     n, m = f2.shape
     for i in range(n):
-        before = i - 1 if i > 0 else n - 1
-        after = i + 1 if i < n - 1 else 0
         for j in range(m):
             for face in range(4):
-                h = west[i, j]
-                k, q = before, j
-                width = dy[j]
+                k, q = neighbour(face, i, j, n, m)
+                width = dy[j] if face < 2 else dx[i]
                 if face == 0:
-                    h = 0.5 * (h + east[before, j]) if linked[0, i, j] else h
+                    h = west[i, j]
+                    h = 0.5 * (h + east[k, j]) if linked[0, i, j] else h
                 elif face == 1:
                     h = east[i, j]
-                    k, q = after, j
-                    h = 0.5 * (h + west[after, j]) if linked[1, i, j] else h
+                    h = 0.5 * (h + west[k, j]) if linked[1, i, j] else h
                 elif face == 2:
                     h = south[i, j]
-                    k, q = i, max(j - 1, 0)
-                    width = dx[i]
                 else:
                     h = north[i, j]
-                    k, q = i, min(j + 1, m - 1)
-                    width = dx[i]
                 mobility, open_share = f2[i, j], 1.0 - g[i, j]
                 if linked[face, i, j]:
                     mobility = 0.5 * (mobility + f2[k, q])

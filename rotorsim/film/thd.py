@@ -20,6 +20,7 @@ from .anderson import AndersonMixer
 from .bush import BushConduction
 from .energy import EnergyProblem, march
 from .heat import (
+    dissipated_power,
     energy_problem,
     heat_to_bush,
     heat_to_shaft,
@@ -142,7 +143,7 @@ class Move(Protocol):
         """From the film's state to the next position and the relative force residual."""
         ...
 
-    def allowed(self, old: Position, new: Position) -> Position:
+    def allowed(self, old: Position, new: Position, /) -> Position:
         """Pull a mixed step back to where a film can be."""
         ...
 
@@ -263,9 +264,7 @@ def _change(problem: FilmProblem, energy: EnergyProblem, mapped: Heat, heat: Hea
     exchanged = shaft * _film_conductance(energy)
     if problem.thermal.bush is BushModel.CONDUCTION:
         exchanged += float(np.sum(2.0 * energy.conductance * bore)) / layers
-    made = float(
-        np.sum(energy.heating[2] * energy.layers.f2 + energy.heating[0] * energy.layers.f0)
-    )
+    made = dissipated_power(energy)
     return max(change * thinning, HEAT_WEIGHT * exchanged / made if made > 0.0 else 0.0)
 
 

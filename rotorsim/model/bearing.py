@@ -5,9 +5,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
 from ..errors import InputError
 
 FULL_TURN = 2.0 * math.pi
+
+
+def angle_between(theta: ArrayLike, other: float) -> NDArray[np.float64]:
+    """Angle from `other` to `theta`, the short way round: -pi to pi [rad]."""
+    return (np.asarray(theta) - other + math.pi) % FULL_TURN - math.pi
 
 
 def _require(condition: bool, message: str, key: str, value: object) -> None:
@@ -166,6 +174,10 @@ class Bearing:
     def diameter(self) -> float:
         """Journal diameter [m]."""
         return 2.0 * self.journal_radius
+
+    def spans_length(self, groove: Groove) -> bool:
+        """Whether `groove` runs from end to end."""
+        return groove.length is None or groove.length >= self.length * (1.0 - 1e-9)
 
     @property
     def is_plain(self) -> bool:

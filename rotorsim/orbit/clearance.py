@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..film.geometry import bore_offset
 from ..model import Bearing
+from ..model.bearing import angle_between
 
 Array = NDArray[np.float64]
 
@@ -54,7 +55,6 @@ def _land_angles(bearing: Bearing) -> Array:
     theta = 2.0 * math.pi * np.arange(_ANGLES) / _ANGLES
     land = np.ones(_ANGLES, dtype=bool)
     for groove in bearing.grooves:
-        if groove.length is None or groove.length >= bearing.length * (1.0 - 1e-9):
-            away = (theta - groove.center + math.pi) % (2.0 * math.pi) - math.pi
-            land &= np.abs(away) > 0.5 * groove.extent
+        if bearing.spans_length(groove):
+            land &= np.abs(angle_between(theta, groove.center)) > 0.5 * groove.extent
     return theta[land]

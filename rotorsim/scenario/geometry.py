@@ -9,10 +9,10 @@ import numpy as np
 
 from ..errors import InputError
 from ..model import Arc, Bearing, Groove, MeshSize
+from ..model.bearing import FULL_TURN
 from .schema import BearingTable
 from .settings import BearingProfile
 
-FULL_TURN = 2.0 * math.pi
 TOLERANCE = 1e-9
 """Angle below which two edges are taken for one [rad]."""
 LEAST_CELLS = 2
@@ -176,7 +176,7 @@ def check_arcs(bearing: Bearing) -> None:
 def _in_groove(bearing: Bearing, start: float, extent: float) -> bool:
     """Whether one full-length groove covers the opening."""
     for groove in bearing.grooves:
-        if groove.length is not None and groove.length < bearing.length * (1.0 - TOLERANCE):
+        if not bearing.spans_length(groove):
             continue
         from_edge = (start - (groove.center - 0.5 * groove.extent) + TOLERANCE) % FULL_TURN
         if from_edge + extent <= groove.extent + 2.0 * TOLERANCE:
