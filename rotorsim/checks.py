@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from .model import Case, Inception, LoadTarget, ThermalModel
+from .model.lubricant import ZERO_CELSIUS
 
 TURBULENT_REYNOLDS = 1000.0
 """rho U c/mu above which a bearing film is expected to be turbulent (Constantinescu)."""
@@ -175,7 +176,7 @@ def _temperature_warnings(case: Case, max_temperature: float | None) -> list[str
     ):
         if value is not None and not low <= value <= high:
             found.append(
-                f"{name} {value - 273.15:.1f} degC is outside the oil's range "
-                f"({low - 273.15:.0f} to {high - 273.15:.0f} degC)"
+                f"{name} {value - ZERO_CELSIUS:.1f} degC is outside the oil's range "
+                f"({low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} degC)"
             )
     return found

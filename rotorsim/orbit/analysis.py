@@ -78,8 +78,7 @@ class OrbitAnalysis:
 
 def analyse(orbit: Orbit) -> OrbitAnalysis:
     """Analyse one run."""
-    constant = bool(np.ptp(orbit.speed) <= 1e-9 * abs(orbit.speed[0]))
-    found = recognise(orbit) if constant else None
+    found = recognise(orbit) if orbit.constant_speed else None
     steady = orbit if found is None or found.steady_from is None else orbit.part(found.steady_from)
     whirl = synchronous = None
     if found is not None and found.steady_from is not None:
@@ -91,13 +90,13 @@ def analyse(orbit: Orbit) -> OrbitAnalysis:
     least = int(np.argmin(orbit.min_film))
     return OrbitAnalysis(
         recognition=found,
-        growth=initial_growth(orbit) if constant else None,
+        growth=initial_growth(orbit) if orbit.constant_speed else None,
         amplitude=0.5 * float(max(np.ptp(steady.x), np.ptp(steady.y))),
         whirl=whirl,
         synchronous=synchronous,
         min_film=float(orbit.min_film[least]),
         min_film_time=float(orbit.t[least]),
-        whirl_range=None if constant else whirl_range(orbit),
+        whirl_range=None if orbit.constant_speed else whirl_range(orbit),
     )
 
 

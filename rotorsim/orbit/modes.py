@@ -83,7 +83,7 @@ def fit_modes(orbit: Orbit) -> Modes:
     nothing needs to be subtracted beforehand.
     """
     speed = float(orbit.speed[0]) if orbit.t.size else 0.0
-    if np.ptp(orbit.speed) > 1e-9 * abs(speed):
+    if not orbit.constant_speed:
         raise InputError("growth is measured at constant speed", key="orbit.speed")
     stride = max(orbit.samples_per_revolution // _SAMPLES_PER_REVOLUTION, 1)
     signals = np.stack([orbit.x, orbit.y, orbit.vx / speed, orbit.vy / speed])[:, ::stride]

@@ -120,6 +120,12 @@ class Orbit:
         return self.angle / (2.0 * np.pi)
 
     @property
+    def constant_speed(self) -> bool:
+        """Whether the shaft turns at one speed throughout."""
+        speed = self.speed
+        return bool(speed.size == 0 or np.ptp(speed) <= 1e-9 * abs(speed[0]))
+
+    @property
     def eccentricity(self) -> Array:
         """Distance from the bearing's centre [m]."""
         return np.hypot(self.x, self.y)

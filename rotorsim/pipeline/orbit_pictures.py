@@ -43,9 +43,7 @@ def steady_from(orbit: Orbit) -> int | None:
     """First sample of the steady part; None where there is none."""
     from ..orbit import recognise
 
-    if np.ptp(orbit.speed) > 1e-9 * abs(orbit.speed[0]):
-        return None
-    return recognise(orbit).steady_from
+    return recognise(orbit).steady_from if orbit.constant_speed else None
 
 
 def orbit_figures(
@@ -57,7 +55,7 @@ def orbit_figures(
 
     yield "orbits", plots.orbit_plot(orbit_pictures(orbits), title, steady_only)
     for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
-        if np.ptp(orbit.speed) <= 1e-9 * abs(orbit.speed[0]):
+        if orbit.constant_speed:
             continue
         try:
             turns = float(orbit.revolutions[-1])

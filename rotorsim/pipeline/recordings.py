@@ -63,7 +63,7 @@ def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
 
     pictures = []
     for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
-        if np.ptp(orbit.speed) <= 1e-9 * abs(orbit.speed[0]):
+        if orbit.constant_speed:
             continue
         try:
             rows = cascade(orbit)
@@ -83,9 +83,8 @@ def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
 
     tracks: list[OrbitTrack] = []
     for orbit in orbits:
-        constant = np.ptp(orbit.speed) <= 1e-9 * abs(orbit.speed[0])
         run = "run_up" if orbit.speed[-1] > orbit.speed[0] else "coast_down"
-        base = orbit.thermal_model if constant else f"{orbit.thermal_model}_{run}"
+        base = orbit.thermal_model if orbit.constant_speed else f"{orbit.thermal_model}_{run}"
         taken = [track.name for track in tracks]
         name, number = base, 2
         while name in taken:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..stability.over_speed import RigidShaft
 from .planes import Plane
+from .wording import KELVIN, RPM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -18,21 +19,20 @@ if TYPE_CHECKING:
     from .control_study import ControlStudy
     from .tolerances import ToleranceStudy
 
-_RPM = 30.0 / np.pi
 _AXES = {
-    "speed": ("shaft speed [rpm]", _RPM, 0.0),
+    "speed": ("shaft speed [rpm]", RPM, 0.0),
     "mass": ("rotor mass per bearing [kg]", 1.0, 0.0),
     "radial_clearance": ("radial clearance [µm]", 1e6, 0.0),
     "applied_load": ("load per bearing [kN]", 1e-3, 0.0),
-    "supply_temperature": ("supply temperature [°C]", 1.0, -273.15),
+    "supply_temperature": ("supply temperature [°C]", 1.0, -KELVIN),
 }
 """Label, factor and offset from SI to what a figure shows."""
 _WORDS = {
-    "speed": ("{:.0f} rpm", _RPM, 0.0),
+    "speed": ("{:.0f} rpm", RPM, 0.0),
     "mass": ("{:.4g} kg per bearing", 1.0, 0.0),
     "radial_clearance": ("c = {:.4g} µm", 1e6, 0.0),
     "applied_load": ("{:.4g} kN", 1e-3, 0.0),
-    "supply_temperature": ("oil at {:.4g} °C", 1.0, -273.15),
+    "supply_temperature": ("oil at {:.4g} °C", 1.0, -KELVIN),
 }
 
 
@@ -124,7 +124,7 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
     from ..stability.modes import track_modes
 
     system, gain = study.system, study.feedback.gain
-    heading = f"{title}\n{study.speed * _RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
+    heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
     share = np.linspace(0.0, 1.5, 61)
     locus = track_modes(lambda f: np.asarray(system.A) - f * np.asarray(system.B) @ gain, share)
     yield (

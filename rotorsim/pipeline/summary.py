@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -14,8 +12,6 @@ if TYPE_CHECKING:
     from ..orbit import Ellipse, Orbit
     from ..table import CoefficientTable
     from .stability import StabilityCurve
-
-_EXPECTED_TOLERANCE = 1e-9
 
 
 def describe_orbit(orbit: Orbit) -> dict[str, Any]:
@@ -28,7 +24,6 @@ def describe_orbit(orbit: Orbit) -> dict[str, Any]:
     """
     from ..orbit import analyse
 
-    constant = bool(np.ptp(orbit.speed) <= _EXPECTED_TOLERANCE * abs(orbit.speed[0]))
     found = analyse(orbit)
     growth, recognised = found.growth, found.recognition
     ratio = None if growth is None else growth.whirl_frequency_ratio
@@ -37,7 +32,7 @@ def describe_orbit(orbit: Orbit) -> dict[str, Any]:
     steady = None if recognised is None else recognised.steady_from
     return {
         "thermal_model": orbit.thermal_model,
-        "kind": "constant speed" if constant else "run-up" if _rises(orbit) else "coast-down",
+        "kind": _kind(orbit),
         "radial_clearance": orbit.radial_clearance,
         "speed": [float(orbit.speed[0]), float(orbit.speed[-1])],
         "duration": float(orbit.t[-1]),
@@ -65,8 +60,10 @@ def describe_orbit(orbit: Orbit) -> dict[str, Any]:
     }
 
 
-def _rises(orbit: Orbit) -> bool:
-    return bool(orbit.speed[-1] > orbit.speed[0])
+def _kind(orbit: Orbit) -> str:
+    if orbit.constant_speed:
+        return "constant speed"
+    return "run-up" if orbit.speed[-1] > orbit.speed[0] else "coast-down"
 
 
 def _ellipse(ellipse: Ellipse | None) -> dict[str, Any] | None:

@@ -5,18 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from .figures import write_figures
 from .main_job import Announce, Attempts, Results, summary
 from .recordings import cascade_pictures, eigenvalue_path, orbit_tracks
 from .stability import map_planes
+from .wording import KELVIN, RPM
 
 if TYPE_CHECKING:
     from ..recording import MapPicture, RecordingContents
-
-KELVIN = 273.15
-RPM = 30.0 / np.pi
 
 
 def write_results(
