@@ -177,7 +177,7 @@ def film_operator(
 
 
 @kernel
-def neighbour(face, i, j, n, m):
+def neighbour(face: int, i: int, j: int, n: int, m: int) -> tuple[int, int]:
     """Cell behind a face: round the bearing the film closes, along it the ends stand for it."""
     if face == 0:
         return (i - 1 if i > 0 else n - 1), j
