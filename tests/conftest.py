@@ -8,11 +8,20 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+import rotorsim
+
+# Programs started by tests take the same package: not what lies in the folder they start in.
+os.environ["PYTHONSAFEPATH"] = "1"
+
 settings.register_profile(
     "ci", max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile("nightly", parent=settings.get_profile("ci"), max_examples=2000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+
+def pytest_report_header() -> str:
+    return f"rotorsim {rotorsim.__version__} from {Path(rotorsim.__file__).parent}"
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -15,7 +15,7 @@ SETUP = [line for line in README.splitlines() if line.startswith("python -m pip 
 def test_exactly_two_setup_commands_one_running_and_one_testing():
     run, test = (command.split(" && ") for command in SETUP)
     assert run[1].startswith("python -m rotorsim run ")
-    assert test[1] == "python -m pytest"
+    assert test[1] == "python -P -m pytest"  # -P: the installed package, not this folder
 
 
 def test_the_first_command_runs_a_shipped_scenario():

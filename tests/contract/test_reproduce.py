@@ -30,7 +30,7 @@ def fresh(tmp_path_factory) -> tuple[dict, Path]:
             "--output", "out", "--docs", "docs",
         ],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"},
+        env={**os.environ, "NO_COLOR": "1"},
         capture_output=True,
         text=True,
         encoding="utf-8",
@@ -154,7 +154,7 @@ def test_another_paper_is_refused(tmp_path):
     done = subprocess.run(
         [sys.executable, "-m", "rotorsim", "reproduce", "nobody"],
         cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"},
+        env={**os.environ, "NO_COLOR": "1"},
         capture_output=True,
         text=True,
         timeout=60,
