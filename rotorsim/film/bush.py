@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
+from ..errors import InputError
 from .energy import EnergyProblem
 from .problem import FilmProblem
 
@@ -181,11 +182,21 @@ class BushConduction:
 
     @classmethod
     def of(cls, problem: FilmProblem) -> BushConduction:
-        """Build the bush of a film problem; operators of recent meshes are kept."""
+        """Build the bush of a film problem; operators of recent meshes are kept.
+
+        Raises
+        ------
+        InputError
+            The bearing has no `bush_outer_radius`.
+        """
         mesh, thermal, bearing = problem.mesh, problem.thermal, problem.bearing
         outer = bearing.bush_outer_radius
         if outer is None:
-            raise ValueError("bush conduction needs the bush's outer radius")
+            raise InputError(
+                "is missing: conduction in the bush needs it; give it in metres, for example "
+                f"bush_outer_radius={1.5 * bearing.journal_radius:.3g}, or another bush model",
+                key="bearing.bush_outer_radius",
+            )
         transfer = thermal.bush_heat_transfer
         operator = _kept_operator(
             mesh.theta_faces.tobytes(),
