@@ -128,6 +128,7 @@ def test_loads_reach_the_problem_in_si():
 
 def test_jeffcott_rotor():
     read = constant("", JEFFCOTT).rotor
+    assert isinstance(read, JeffcottRotor)
     assert read == JeffcottRotor(60.0, 6.0, 9.6e6, 960.0, 1.2e-4)
     assert read.mass == 66.0
     assert read.natural_frequency == pytest.approx(400.0)
