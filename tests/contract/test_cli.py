@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import strict
 
 ROOT = Path(__file__).parents[2]
 QUICK = ROOT / "scenarios" / "quick.toml"
@@ -71,29 +72,6 @@ def rotorsim(*arguments: object, cwd: Path) -> subprocess.CompletedProcess:
         encoding="utf-8",
         timeout=300,
     )
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch, capsys):
-    """Call the command line within this process, in the temporary folder: quicker."""
-    from rotorsim.cli.app import app
-
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
-
-    def call(*arguments: object) -> subprocess.CompletedProcess:
-        words = [str(argument) for argument in arguments]
-        with pytest.raises(SystemExit) as end:
-            app(words, prog_name="rotorsim")
-        said = capsys.readouterr()
-        return subprocess.CompletedProcess(words, end.value.code, said.out, said.err)
-
-    return call
-
-
-def strict(text: str) -> dict:
-    """One JSON document and nothing else, without NaN."""
-    return json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} in the JSON"))
 
 
 def flat(text: str) -> str:

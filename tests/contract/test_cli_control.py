@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import CommandLine, strict
 
 SCENARIO = """
 title = "small"
@@ -29,9 +28,9 @@ mass = "450 kg"
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch, capsys):
+def here(here: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> CommandLine:
+    """Call the command line beside small.toml, with a film in closed form."""
     from rotorsim import orbit
-    from rotorsim.cli.app import app
     from rotorsim.orbit import LoadedFilm, ShortBearingForce
 
     def short(case, speed):
@@ -41,25 +40,15 @@ def here(tmp_path, monkeypatch, capsys):
 
     # The finite film is solved or mapped for half a minute; the closed form will do here.
     monkeypatch.setattr(orbit, "loaded_film", short)
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
     (tmp_path / "small.toml").write_text(SCENARIO, encoding="utf-8")
-
-    def call(*arguments: object) -> subprocess.CompletedProcess:
-        words = [str(argument) for argument in arguments]
-        with pytest.raises(SystemExit) as end:
-            app(words, prog_name="rotorsim")
-        said = capsys.readouterr()
-        return subprocess.CompletedProcess(words, end.value.code, said.out, said.err)
-
-    return call
+    return here
 
 
 @pytest.mark.parametrize("design", ["lqr", "pd"])
 def test_design_without_a_run_in_time(here, design):
     done = here("control", "small.toml", "--design", design, "--revolutions", "0", "--json")
     assert done.returncode == 0, done.stderr
-    said = json.loads(done.stdout)
+    said = strict(done.stdout)
     assert said["passive"]["growth_rate"] > 0.0 > said["controlled"]["growth_rate"]
     assert said["critical_mass"] < said["mass"] == 450.0
     assert np.shape(said["gain"]) == (2, 4)
@@ -91,7 +80,7 @@ def test_held_with_enough_force_and_lost_with_too_little(here):
         assert Path("figures", name).stat().st_size > 5000
     weak = here("control", "small.toml", "--max-force", "20 N", "--disturbance", "30 um", "--json")
     assert weak.returncode == 1
-    said = json.loads(weak.stdout)
+    said = strict(weak.stdout)
     assert not said["holds"]
     assert said["controlled"]["growth_rate"] < 0.0
     assert "settled" not in (said["controlled"]["status"], said["passive"]["status"])

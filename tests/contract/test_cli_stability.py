@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import CommandLine, strict
 
 from rotorsim.stability import rigid_threshold
 
@@ -46,26 +47,10 @@ ROW = [2e8, 6e8, -1e8, 3e8, 7e5, 1e5, 1e5, 3e5]
 
 
 @pytest.fixture
-def here(tmp_path, monkeypatch, capsys):
-    """Call the command line within this process, in the temporary folder."""
-    from rotorsim.cli.app import app
-
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
+def here(here: CommandLine, tmp_path: Path) -> CommandLine:
+    """Call the command line beside small.toml."""
     (tmp_path / "small.toml").write_text(SCENARIO, encoding="utf-8")
-
-    def call(*arguments: object) -> subprocess.CompletedProcess:
-        words = [str(argument) for argument in arguments]
-        with pytest.raises(SystemExit) as end:
-            app(words, prog_name="rotorsim")
-        said = capsys.readouterr()
-        return subprocess.CompletedProcess(words, end.value.code, said.out, said.err)
-
-    return call
-
-
-def strict(text: str) -> dict:
-    return json.loads(text, parse_constant=lambda name: pytest.fail(f"{name} in the JSON"))
+    return here
 
 
 def csv_text(speeds=(500.0, 700.0, 900.0), change=None):

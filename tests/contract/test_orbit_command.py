@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import CommandLine, strict
 
 pytest.importorskip("rerun")
 
@@ -41,26 +41,16 @@ RAMP = '{ start = "9000 rpm", stop = "12000 rpm", duration = "0.2 s" }'
 
 
 @pytest.fixture
-def call(tmp_path, monkeypatch, capsys):
-    from rotorsim.cli.app import app
-
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("COLUMNS", "100")
+def call(here: CommandLine, tmp_path: Path) -> CommandLine:
+    """Call the command `orbit` beside small.toml."""
     (tmp_path / "small.toml").write_text(TEXT, encoding="utf-8")
-
-    def run(*words: str) -> subprocess.CompletedProcess:
-        with pytest.raises(SystemExit) as end:
-            app(["orbit", *words], prog_name="rotorsim")
-        said = capsys.readouterr()
-        return subprocess.CompletedProcess(words, end.value.code, said.out, said.err)
-
-    return run
+    return partial(here, "orbit")
 
 
 def test_json_says_what_the_orbit_comes_to(call, tmp_path):
     done = call("small.toml", "--json")
     assert done.returncode == 0, done.stderr
-    (row,) = json.loads(done.stdout, parse_constant=pytest.fail)["orbits"]
+    (row,) = strict(done.stdout)["orbits"]
     assert row["status"] == "settled"
     assert row["force"] == "film"
     assert row["growth_rate"] < 0.0

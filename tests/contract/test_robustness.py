@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import CommandLine, strict
 
 ROOT = Path(__file__).parents[2]
 TINY = """
@@ -45,10 +46,8 @@ def good_table(tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def nonsense(tmp_path, monkeypatch, capsys, good_table):
+def nonsense(here: CommandLine, tmp_path: Path, good_table: Path) -> CommandLine:
     """Call the command line within a folder of good and of useless files."""
-    from rotorsim.cli.app import app
-
     noise = np.random.default_rng(1).bytes(3000)
     for name in ("noise.toml", "noise.nc", "noise.csv", "noise.json", "noise.rrd"):
         (tmp_path / name).write_bytes(noise)
@@ -58,15 +57,7 @@ def nonsense(tmp_path, monkeypatch, capsys, good_table):
         (tmp_path / name).mkdir()
     (tmp_path / "good.toml").write_text(TINY, encoding="utf-8")
     shutil.copy(good_table, tmp_path / "good.nc")
-    monkeypatch.chdir(tmp_path)
-
-    def call(*words: str) -> tuple[int, str, str]:
-        with pytest.raises(SystemExit) as end:
-            app(list(words), prog_name="rotorsim")
-        said = capsys.readouterr()
-        return end.value.code, said.out, said.err  # type: ignore[return-value]
-
-    return call
+    return here
 
 
 USELESS = ("noise", "empty", "folder", "missing")
@@ -83,11 +74,11 @@ READERS = [
 def test_useless_files_are_refused_by_name(command, kind, name, nonsense, tmp_path):
     before = sorted(os.listdir(tmp_path))
     options = ["--to", "csv"] if command == "export" else []
-    code, out, err = nonsense(command, f"{name}.{kind}", *options, "--json")
-    assert code == 2, err
-    assert f"{name}.{kind}" in err
-    assert "Traceback" not in err
-    assert json.loads(out)["error"]["message"]
+    done = nonsense(command, f"{name}.{kind}", *options, "--json")
+    assert done.returncode == 2, done.stderr
+    assert f"{name}.{kind}" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert strict(done.stdout)["error"]["message"]
     assert sorted(os.listdir(tmp_path)) == before
 
 
@@ -105,6 +96,8 @@ def test_useless_files_are_refused_by_name(command, kind, name, nonsense, tmp_pa
         ("export", "good.nc", "--to", "nc"),
         ("export", "good.nc", "--to", "xlsx"),
         ("export", "good.nc", "--to", ""),
+        ("export", "good.nc", "--to", "csv,mat", "--load-direction", "45 deg"),
+        ("export", "good.nc", "--to", "ross", "--load-direction", "45"),
         ("orbit", "good.toml", "--table", "noise.nc"),
         ("orbit", "good.toml", "--table", "good.nc", "--model", "hot"),
         ("solve", "good.toml", "--speed", "-5 rpm"),
@@ -129,23 +122,22 @@ def test_useless_files_are_refused_by_name(command, kind, name, nonsense, tmp_pa
 )
 def test_nonsense_is_refused_before_any_work(words, nonsense, tmp_path):
     before = sorted(os.listdir(tmp_path))
-    code, out, err = nonsense(*words, "--json")
-    assert code == 2, err
-    assert err.splitlines()[-1].startswith("error: ")
-    assert "Traceback" not in err
-    assert json.loads(out)["error"]["message"]
+    done = nonsense(*words, "--json")
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.splitlines()[-1].startswith("error: ")
+    assert "Traceback" not in done.stderr
+    assert strict(done.stdout)["error"]["message"]
     assert sorted(os.listdir(tmp_path)) == before
 
 
 def test_shipped_scenarios_are_found_by_name(nonsense):
-    code, out, _ = nonsense("check", "quick", "--json")
-    assert code == 0
-    assert json.loads(out)["points"] == 10
-    code, _, err = nonsense("check", "quikc")
-    assert code == 2
-    assert "quick" in err
-    code, _, _ = nonsense("new", "mine", "--example", "quick", "--quiet")
-    assert code == 0
+    done = nonsense("check", "quick", "--json")
+    assert done.returncode == 0
+    assert strict(done.stdout)["points"] == 10
+    done = nonsense("check", "quikc")
+    assert done.returncode == 2
+    assert "quick" in done.stderr
+    assert nonsense("new", "mine", "--example", "quick", "--quiet").returncode == 0
     shipped = (ROOT / "scenarios" / "quick.toml").read_text(encoding="utf-8")
     assert Path("mine.toml").read_text(encoding="utf-8") == shipped
 
@@ -179,10 +171,10 @@ def tampered(path: Path, how: str) -> str:
 )
 def test_damaged_and_newer_tables_are_refused_with_a_reason(how, words, nonsense):
     reason = tampered(Path("good.nc"), how)
-    code, _, err = nonsense(*words)
-    assert code == 2
-    assert "good.nc" in err
-    assert reason in err
+    done = nonsense(*words)
+    assert done.returncode == 2
+    assert "good.nc" in done.stderr
+    assert reason in done.stderr
 
 
 KILLING = """
