@@ -42,6 +42,25 @@ def export_formats(text: str) -> list[ExportFormat]:
     return [ExportFormat(word) for word in dict.fromkeys(words)]
 
 
+def load_directions(
+    text: str | None, table: Path, kinds: list[ExportFormat]
+) -> tuple[float | None, float | None]:
+    """``--load-direction`` [rad] for reading `table` and for writing: whichever is ROSS's."""
+    if text is None:
+        return None, None
+    from ..units import parse_quantity
+
+    angle = parse_quantity(text, "angle", key="--load-direction", example="-90 deg")
+    reads, writes = table.suffix.lower() in (".toml", ".json"), ExportFormat.ROSS in kinds
+    if not reads and not writes:
+        message = "has no use: only the frame of ROSS is turned; give ross to --to"
+        raise InputError(message, key="--load-direction", value=text)
+    if reads and writes:
+        message = "could be that of TABLE or of the new file, both of ROSS; first export --to nc"
+        raise InputError(message, key="--load-direction", value=text)
+    return (angle, None) if reads else (None, angle)
+
+
 def new(
     output: Output,
     name: Annotated[str, typer.Argument(help="Name of the scenario file.", show_default=False)],
@@ -139,6 +158,15 @@ def export(
             "--output", "-o", metavar="DIR", help="Folder.", show_default="next to the table"
         ),
     ] = None,
+    load_direction: Annotated[
+        str | None,
+        typer.Option(
+            "--load-direction",
+            metavar="ANGLE",
+            help='Of the load in the frame of ROSS, from x towards y, e.g. "45 deg".',
+            show_default="-90 deg, the weight",
+        ),
+    ] = None,
 ) -> int:
     """Write a table for other programs, or (nc) another program's table for this one.
 
@@ -150,7 +178,8 @@ def export(
     from ..interchange import FORMATS, read_table, write_table
 
     kinds = export_formats(to)
-    loaded = read_table(table)
+    read_at, written_at = load_directions(load_direction, table, kinds)
+    loaded = read_table(table, load_direction=read_at)
     name = table.stem.removesuffix(".ross")
     where = folder or table.parent
     check_folder(where)
@@ -159,7 +188,13 @@ def export(
             raise InputError(
                 "would be replaced by itself; choose another folder with --output", source=table
             )
-    files = {kind.value: write_table(loaded, kind.value, where, name) for kind in kinds}
+    files = {
+        kind.value: write_table(
+            loaded, kind.value, where, name,
+            load_direction=written_at if kind is ExportFormat.ROSS else None,
+        )
+        for kind in kinds
+    }  # fmt: skip
     output.document({"files": files})
     output.show("\n".join(f"{kind}: {path}" for kind, paths in files.items() for path in paths))
     return DONE

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from ..errors import TableError
 from ..table import CoefficientTable
 from . import matlab, ross, text
-from .curves import curves
+from .curves import Curve, curves
 
 FORMATS = {
     "ross": "ross.toml",
@@ -18,10 +20,19 @@ FORMATS = {
 }
 """Names of the formats, and how their files end."""
 _SUFFIXES = (".nc", ".csv", ".json")
-_ONE_CURVE = {"ross": ross.write, "txt": text.write}
+_LOAD_FRAME_SUFFIXES = (".nc", ".csv")
+_NO_USE = "has no use: this format is in the load frame, only that of ROSS is not"
+_ONE_CURVE: dict[str, Callable[[Curve, Path], Path]] = {"ross": ross.write, "txt": text.write}
 
 
-def write_table(table: CoefficientTable, kind: str, folder: str | Path, name: str) -> list[Path]:
+def write_table(
+    table: CoefficientTable,
+    kind: str,
+    folder: str | Path,
+    name: str,
+    *,
+    load_direction: float | None = None,
+) -> list[Path]:
     """Write a table in one format.
 
     Parameters
@@ -34,6 +45,10 @@ def write_table(table: CoefficientTable, kind: str, folder: str | Path, name: st
         Made if it is missing.
     name : str
         Of the files, without suffix.
+    load_direction : float, optional
+        For ``ross``: where the static load points in the frame of ROSS [rad], from x towards y
+        (with the rotation); by default along -y, the weight. The other formats are in the load
+        frame.
 
     Returns
     -------
@@ -43,15 +58,19 @@ def write_table(table: CoefficientTable, kind: str, folder: str | Path, name: st
     Raises
     ------
     TableError
-        No such format, nothing in the table converged, or a CSV of a table with further
-        dimensions.
+        No such format, nothing in the table converged, a CSV of a table with further dimensions,
+        or a `load_direction` for another format than ``ross``.
     """
     if kind not in FORMATS:
         raise TableError(f"must be one of {', '.join(FORMATS)}", key="format", value=kind)
+    if load_direction is not None and kind != "ross":
+        raise TableError(_NO_USE, key="load_direction", value=load_direction)
     where = Path(folder)
     where.mkdir(parents=True, exist_ok=True)
     if kind in _ONE_CURVE:
         write = _ONE_CURVE[kind]
+        if load_direction is not None:
+            write = partial(ross.write, load_direction=load_direction)
         return [
             write(curve, where / f"{'_'.join(filter(None, (name, curve.name)))}.{FORMATS[kind]}")
             for curve in curves(table)
@@ -69,13 +88,22 @@ def is_table(path: str | Path) -> bool:
     return suffix in _SUFFIXES or (suffix == ".toml" and ross.is_saved_by_ross(source))
 
 
-def read_table(path: str | Path) -> CoefficientTable:
+def read_table(path: str | Path, *, load_direction: float | None = None) -> CoefficientTable:
     """Read a table from netCDF (``.nc``), CSV (``.csv``) or a bearing saved by ROSS.
+
+    Parameters
+    ----------
+    path : str or Path
+    load_direction : float, optional
+        For a bearing saved by ROSS: where the static load points in its frame [rad], from x
+        towards y. By default what the file says ([rotorsim] load_direction, as `write_table`
+        writes it), and if it says nothing along -y, the weight.
 
     Raises
     ------
     TableError
-        No such file, or not readable as what its name says.
+        No such file, not readable as what its name says, or a `load_direction` for a table in the
+        load frame or against what the file says.
     """
     source = Path(path)
     suffix = source.suffix.lower()
@@ -83,12 +111,14 @@ def read_table(path: str | Path) -> CoefficientTable:
         raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)
     if source.is_dir():
         raise TableError("is a directory; give a table", source=source)
+    if load_direction is not None and suffix in _LOAD_FRAME_SUFFIXES:
+        raise TableError(_NO_USE, source=source, key="load_direction", value=load_direction)
     if suffix == ".nc":
         return CoefficientTable.load(source)
     if suffix == ".csv":
         return CoefficientTable.from_csv(source)
     if suffix in (".toml", ".json"):
-        return ross.read(source)
+        return ross.read(source, load_direction)
     raise TableError(
         "a table's name ends in .nc (netCDF), .csv, or .toml or .json (ROSS)", source=source
     )

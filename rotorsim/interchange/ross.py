@@ -1,7 +1,8 @@
 """Bearings as ROSS saves them: ``BearingElement.load`` reads the files, and its own are read here.
 
 A file is TOML, which allows comments, or on reading JSON; one table whose keys are the arguments of
-ROSS's ``BearingElement``.
+ROSS's ``BearingElement``. Where the static load is not the weight, a second table, which ROSS does
+not look at, says where it points: ``[rotorsim]`` with ``load_direction = "45 deg"``.
 """
 
 from __future__ import annotations
@@ -14,30 +15,35 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..atomic import write_text
-from ..errors import TableError
+from ..errors import InputError, TableError
 from ..table import CoefficientTable
 from ..table.variables import COEFFICIENTS
-from .conventions import ROSS_FRAME, from_ross, to_ross
+from ..units import parse_quantity
+from .conventions import WEIGHT, frame_of_ross, from_ross, in_degrees, to_ross
 from .curves import Curve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _MAX_BYTES = 50_000_000
+_OWN, _DIRECTION = "rotorsim", "load_direction"
 
 
-def write(curve: Curve, path: Path) -> Path:
-    """Write one curve as a file for ``ross.BearingElement.load``."""
+def write(curve: Curve, path: Path, load_direction: float = WEIGHT) -> Path:
+    """Write one curve as a file for ``ross.BearingElement.load``.
+
+    ``load_direction`` is that of the static load in the frame of ROSS [rad], from x towards y.
+    """
     head = [
         *curve.facts,
         f'Read it with: bearing = ross.BearingElement.load("{path.name}"), then set bearing.n',
         "(the node; the file says 0), and another bearing.tag for each use. Speeds (frequency) in",
         "rad/s, the shaft's.",
-        *ROSS_FRAME,
+        *frame_of_ross(load_direction),
     ]
     tag = "".join(letter for letter in path.stem.removesuffix(".ross") if letter.isprintable())
-    stiffness = to_ross(curve.stiffness).reshape(-1, 4)
-    damping = to_ross(curve.damping).reshape(-1, 4)
+    stiffness = to_ross(curve.stiffness, load_direction).reshape(-1, 4)
+    damping = to_ross(curve.damping, load_direction).reshape(-1, 4)
     lines = [f"# {line}" for fact in head for line in fact.splitlines()]
     # The dots and quotes a name may hold would end a bare key.
     lines += ["", f"[{json.dumps('BearingElement_' + tag)}]", "n = 0", f"tag = {json.dumps(tag)}"]
@@ -50,6 +56,9 @@ def write(curve: Curve, path: Path) -> Path:
         f"{name} = [{', '.join(repr(float(value) + 0.0) for value in column)}]"
         for name, column in columns.items()
     ]
+    degrees = in_degrees(load_direction)
+    if degrees != in_degrees(WEIGHT):  # after the bearing: ROSS loads the first table
+        lines += ["", f"[{_OWN}]", f'{_DIRECTION} = "{degrees:.13g} deg"']
     write_text(path, "\n".join(lines) + "\n")
     return path
 
@@ -69,13 +78,21 @@ def _is_ross(entries: Any) -> bool:
     )
 
 
-def read(path: str | Path) -> CoefficientTable:
+def read(path: str | Path, load_direction: float | None = None) -> CoefficientTable:
     """Table of the one bearing that ROSS, or `write`, saved to `path` (TOML or JSON).
+
+    Parameters
+    ----------
+    path : str or Path
+    load_direction : float, optional
+        Where the static load points in the frame of ROSS [rad], from x towards y; by default what
+        the file says, and if it says nothing along -y.
 
     Raises
     ------
     TableError
-        Not such a file, several bearings, no speeds, or coefficients that are no numbers.
+        Not such a file, several bearings, no speeds, coefficients that are no numbers, or a file
+        that says another `load_direction`.
     """
     source = Path(path)
     entries = _entries(source)
@@ -84,7 +101,24 @@ def read(path: str | Path) -> CoefficientTable:
     bearings = [e for e in entries.values() if isinstance(e, dict) and {"kxx", "cxx"} <= set(e)]
     if len(bearings) > 1:
         raise TableError("holds several bearings; save each to a file of its own", source=source)
-    return _table(bearings[0], source)
+    return _table(bearings[0], _direction(entries, load_direction, source), source)
+
+
+def _direction(entries: dict[str, Any], given: float | None, source: Path) -> float:
+    """Direction of the static load [rad]: the file's, or `given`, or that of the weight."""
+    if _OWN not in entries:
+        return WEIGHT if given is None else given
+    own, key = entries[_OWN], f"{_OWN}.{_DIRECTION}"
+    if not isinstance(own, dict) or set(own) != {_DIRECTION}:
+        raise TableError(f"must hold {_DIRECTION} and nothing else", source=source, key=_OWN)
+    try:
+        stated = parse_quantity(own[_DIRECTION], "angle")
+    except InputError as error:
+        raise TableError(error.message, source=source, key=key, value=error.value) from None
+    if given is not None and in_degrees(given) != in_degrees(stated):
+        message = f"another direction was given ({in_degrees(given):.13g} deg); leave it away"
+        raise TableError(message, source=source, key=key, value=own[_DIRECTION])
+    return stated
 
 
 def _entries(source: Path) -> Any:
@@ -99,7 +133,7 @@ def _entries(source: Path) -> Any:
         raise TableError(f"not a TOML or JSON file: {error}", source=source) from None
 
 
-def _table(bearing: dict[str, Any], source: Path) -> CoefficientTable:
+def _table(bearing: dict[str, Any], load_direction: float, source: Path) -> CoefficientTable:
     from ..table.assembly import build
 
     if bearing.get("frequency") is None:
@@ -118,7 +152,7 @@ def _table(bearing: dict[str, Any], source: Path) -> CoefficientTable:
     if inertia:
         raise TableError("added mass is not known here", source=source, key=inertia[0])
     values = np.stack(columns, axis=-1).reshape(1, 1, -1, 2, 2, 2)
-    turned = from_ross(values).reshape(1, 1, -1, 8)
+    turned = from_ross(values, load_direction).reshape(1, 1, -1, 8)
     variables: dict[str, Any] = {n: turned[..., i] for i, n in enumerate(COEFFICIENTS)}
     variables["status"] = np.full(turned.shape[:-1], "converged", dtype=object)
     coordinates = {"thermal_model": ["given"], "radial_clearance": [np.nan], "speed": speeds}

@@ -15,6 +15,7 @@ from .netcdf import scenario_digest
 from .variables import (
     ATTRIBUTES,
     COEFFICIENTS,
+    CONVENTIONS,
     DIMENSIONS,
     SCALARS,
     TABLE_VERSION,
@@ -143,7 +144,7 @@ def stack(
 
 
 def with_provenance(dataset: xr.Dataset) -> xr.Dataset:
-    """Add what every file states: format, program version, date, scenario digest."""
+    """Add what every file states: format, frame, program version, date, scenario digest."""
     attributes = {
         key: value if isinstance(value, (str, int, float)) else str(value)
         for key, value in dataset.attrs.items()
@@ -155,6 +156,7 @@ def with_provenance(dataset: xr.Dataset) -> xr.Dataset:
     now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     attributes.setdefault("date", now)
     attributes["rotorsim_table_version"] = TABLE_VERSION
+    attributes["frame"] = " ".join(CONVENTIONS)
     if "scenario" in attributes:
         attributes["scenario_sha256"] = scenario_digest(str(attributes["scenario"]))
     return dataset.assign_attrs(attributes)

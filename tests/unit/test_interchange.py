@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import importlib.util
 import json
+import math
+import re
 import tomllib
 import warnings
 from dataclasses import replace
@@ -12,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rotorsim.errors import TableError
+from rotorsim.errors import InputError, TableError
 from rotorsim.interchange import FORMATS, read_table, write_table
 from rotorsim.interchange.conventions import from_ross, to_ross
 from rotorsim.operating_point import OperatingPoint
@@ -70,12 +72,12 @@ def test_what_is_written_reads_back_to_the_last_digit(kind, one, tmp_path):
     assert again.converged.all()
 
 
-@pytest.mark.parametrize("kind", ["csv", "ross", "txt", "mat"])
+@pytest.mark.parametrize("kind", ["csv", "ross", "txt", "mat", "nc"])
 def test_every_file_states_frame_and_signs(kind, one, tmp_path):
     (path,) = write_table(one, kind, tmp_path, "bearing")
     text = path.read_bytes().decode("utf-8", errors="ignore")
     assert "K_ij = -dF_i/dx_j" in text
-    assert "load" in text
+    assert ("x along the static load on the journal, y 90 degrees" in text) == (kind != "ross")
     assert ("Frame of ROSS" in text) == (kind == "ross")
 
 
@@ -113,6 +115,171 @@ def test_more_load_moves_the_journal_down_and_on_with_the_rotation(one, tmp_path
     assert (x, y) == pytest.approx((there[1], -there[0]))
     assert x > 0.0
     assert y < 0.0
+
+
+WEIGHT_FILE = """\
+# Coefficients from made.csv
+# thermal model given
+# Read it with: bearing = ross.BearingElement.load("b.ross.toml"), then set bearing.n
+# (the node; the file says 0), and another bearing.tag for each use. Speeds (frequency) in
+# rad/s, the shaft's.
+# Frame of ROSS: z along the shaft, the shaft turning from x to y, y up; the static load is
+# the weight, along -y.
+# K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;
+# first index: direction of the force, second: direction of the displacement or velocity.
+# From rotorsim's load frame (x_l along the load, y_l 90 degrees ahead of it with the
+# rotation): x = y_l, y = -x_l, so that kxx = k_yy, kxy = -k_yx, kyx = -k_xy, kyy = k_xx
+# (on the right in the load frame), and the same for c. Where the load points elsewhere in your
+# model, turn the coefficients to it first.
+
+["BearingElement_b"]
+n = 0
+tag = "b"
+frequency = [100.0, 200.0]
+kxx = [150000000.0, 125000000.0]
+kxy = [35000000.0, 100000000.0]
+kyx = [-300000000.0, -325000000.0]
+kyy = [250000000.0, 200000000.0]
+cxx = [0.0, 400000.0]
+cxy = [-500000.0, -300000.0]
+cyx = [-550000.0, -300000.0]
+cyy = [1750000.0, 850000.0]
+"""
+"""As the program wrote it when it knew the weight only."""
+MADE = """\
+speed [rad/s],kxx [N/m],kxy [N/m],kyx [N/m],kyy [N/m],\
+cxx [N s/m],cxy [N s/m],cyx [N s/m],cyy [N s/m]
+100,2.5e8,3e8,-3.5e7,1.5e8,1.75e6,5.5e5,5e5,0
+200,2e8,3.25e8,-1e8,1.25e8,8.5e5,3e5,3e5,4e5
+"""
+ANGLES = [math.radians(a) for a in (-170.25, -90.0, -45.0, 0.0, 1e-3, 45.0, 90.0, 137.7, 180.0)]
+ANGLES += list(np.random.default_rng(7).uniform(-9.0, 9.0, 6))
+
+
+@pytest.mark.parametrize("direction", [None, -0.5 * math.pi, 1.5 * math.pi])
+def test_the_weight_is_written_as_ever(direction, tmp_path):
+    (tmp_path / "made.csv").write_text(MADE, encoding="utf-8")
+    source = read_table(tmp_path / "made.csv")
+    (path,) = write_table(source, "ross", tmp_path, "b", load_direction=direction)
+    assert path.read_bytes() == WEIGHT_FILE.encode()
+
+
+def matrices(entry: dict, letter: str) -> np.ndarray:
+    rows = [[entry[f"{letter}{i}{j}"] for j in "xy"] for i in "xy"]
+    return np.moveaxis(np.array(rows), -1, 0)
+
+
+def bearing_entry(path: Path) -> dict:
+    """First table of a file: the one that ROSS loads."""
+    return next(iter(tomllib.loads(path.read_text(encoding="utf-8")).values()))
+
+
+@pytest.mark.parametrize("direction", ANGLES)
+def test_a_bearing_under_any_load_comes_back(direction, one, tmp_path):
+    (path,) = write_table(one, "ross", tmp_path, "b", load_direction=direction)
+    given = tmp_path / "given.json"  # as ROSS saves it: nothing says where the load points
+    given.write_text(json.dumps({"BearingElement_b": bearing_entry(path)}), encoding="utf-8")
+    for again in (read_table(path), read_table(given, load_direction=direction)):
+        for found, wanted in ((again.stiffness, one.stiffness), (again.damping, one.damping)):
+            assert np.abs(found - wanted).max() < 1e-14 * np.abs(wanted).max()
+
+
+@pytest.mark.parametrize("direction", ANGLES)
+def test_the_turned_bearing_holds_the_same_rotor_under_the_turned_load(direction, one, tmp_path):
+    """Complex numbers turn by a factor; eigenvalues do not depend on axes."""
+    (path,) = write_table(one, "ross", tmp_path, "b", load_direction=direction)
+    entry = bearing_entry(path)
+    turned = zip(matrices(entry, "k"), matrices(entry, "c"), strict=True)
+    known = zip(one.stiffness[0, 0], one.damping[0, 0], strict=True)
+    factor = np.exp(1j * direction)
+    for (k, c), (k_load, c_load) in zip(turned, known, strict=True):
+        # A load of 1 N along the load's direction, and the journal's step under it.
+        there = complex(*np.linalg.solve(k_load, [1.0, 0.0]))
+        here = complex(*np.linalg.solve(k, [factor.real, factor.imag]))
+        assert abs(here - factor * there) < 1e-9 * abs(there)
+        poles = np.linalg.eigvals(state_matrix(k, c))
+        expected = np.linalg.eigvals(state_matrix(k_load, c_load))
+        apart = np.abs(poles[:, None] - expected)
+        assert apart.min(axis=1).max() < 1e-9 * np.abs(expected).max()
+        assert apart.min(axis=0).max() < 1e-9 * np.abs(expected).max()
+        # What drives forward whirl drives it still: no axis was mirrored.
+        assert k[0, 1] - k[1, 0] == pytest.approx(k_load[0, 1] - k_load[1, 0])
+
+
+def state_matrix(stiffness: np.ndarray, damping: np.ndarray, mass: float = 900.0) -> np.ndarray:
+    """Of a rigid rotor on one bearing."""
+    return np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness / mass, -damping / mass]])
+
+
+@pytest.mark.parametrize("direction", [d for d in ANGLES if d != -0.5 * math.pi])
+def test_the_file_says_how_its_numbers_were_turned(direction, one, tmp_path):
+    """The formulas in the head, done by hand, give the numbers below them."""
+    (path,) = write_table(one, "ross", tmp_path, "b", load_direction=direction)
+    text = path.read_text(encoding="utf-8")
+    (degrees,) = re.findall(r"points (\S+) degrees from x towards y", text)
+    assert math.cos(math.radians(float(degrees)) - direction) == pytest.approx(1.0, abs=1e-15)
+    cosine, sine = math.cos(direction), math.sin(direction)
+    terms = {"cos^2": cosine**2, "sin^2": sine**2, "sin cos": sine * cosine}
+    entry = bearing_entry(path)
+    formulas = re.findall(
+        r"^# (kxx|kxy|kyx|kyy) = (cos\^2) (\w+) ([+-]) (sin cos) \((\w+) ([+-]) (\w+)\) "
+        r"([+-]) (sin\^2) (\w+)$",
+        text,
+        re.MULTILINE,
+    )
+    assert [formula[0] for formula in formulas] == ["kxx", "kxy", "kyx", "kyy"]
+    for name, t1, a, s2, t2, b, s3, c, s4, t3, d in formulas:
+        k = {f"k_{i}{j}": one.stiffness[0, 0, :, m, n]
+             for m, i in enumerate("xy") for n, j in enumerate("xy")}  # fmt: skip
+        signs = [{"+": 1.0, "-": -1.0}[sign] for sign in (s2, s3, s4)]
+        middle = k[b] + signs[1] * k[c]
+        value = terms[t1] * k[a] + signs[0] * terms[t2] * middle + signs[2] * terms[t3] * k[d]
+        assert entry[name] == pytest.approx(value, rel=1e-9, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("own", "message"),
+    [
+        ("30 deg", "load_direction: another direction was given"),
+        ("45", "load_direction: lacks its unit"),
+        ("45 mm", "load_direction: .* not a unit of angle"),
+        (45, "load_direction: is a bare number"),
+        (None, "rotorsim: must hold load_direction"),
+    ],
+)
+def test_directions_that_contradict_or_say_nothing_are_refused(own, message, tmp_path):
+    table = {} if own is None else {"load_direction": own}
+    path = tmp_path / "b.json"
+    path.write_text(json.dumps({"BearingElement_x": GOOD, "rotorsim": table}), encoding="utf-8")
+    with pytest.raises(TableError, match=message) as caught:
+        read_table(path, load_direction=math.radians(45.0))
+    assert "b.json" in str(caught.value)
+
+
+def test_only_the_frame_of_ross_is_turned(one, tmp_path):
+    for kind in ("csv", "mat", "txt", "nc"):
+        with pytest.raises(TableError, match="load_direction: has no use"):
+            write_table(one, kind, tmp_path / kind, "b", load_direction=0.0)
+        assert not (tmp_path / kind).exists()
+    for kind in ("csv", "nc"):
+        (path,) = write_table(one, kind, tmp_path, "b")
+        with pytest.raises(TableError, match="load_direction: has no use"):
+            read_table(path, load_direction=0.0)
+    with pytest.raises(TableError, match="load_direction: must be a finite angle"):
+        write_table(one, "ross", tmp_path, "b", load_direction=math.nan)
+
+
+def test_load_direction_goes_to_the_file_of_ross():
+    from rotorsim.cli.file_commands import ExportFormat, load_directions
+
+    ross, csv = ExportFormat.ROSS, ExportFormat.CSV
+    assert load_directions(None, Path("b.nc"), [csv]) == (None, None)
+    eighth = pytest.approx(0.25 * math.pi)
+    assert load_directions("45 deg", Path("b.nc"), [csv, ross]) == (None, eighth)
+    assert load_directions("45 deg", Path("b.json"), [csv]) == (eighth, None)
+    for source, kinds in (("b.nc", [csv]), ("b.toml", [csv, ross])):
+        with pytest.raises(InputError, match="--load-direction"):
+            load_directions("45 deg", Path(source), kinds)
 
 
 def reference() -> tuple[dict, GeneralRotor]:
