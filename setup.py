@@ -1,5 +1,6 @@
 """Build step: scenarios/ goes into the package. Everything else is in pyproject.toml."""
 
+import shutil
 from pathlib import Path
 
 from setuptools import setup
@@ -11,6 +12,8 @@ class BuildWithScenarios(build_py):
 
     def run(self) -> None:
         """Build the package, then add the scenarios."""
+        # What an earlier build left would go into the wheel, modules since deleted included.
+        shutil.rmtree(Path(self.build_lib) / "rotorsim", ignore_errors=True)
         super().run()
         if self.editable_mode:  # the source tree's own are found there
             return

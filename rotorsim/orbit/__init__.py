@@ -5,7 +5,7 @@ Everything is SI and in the load frame. `simulate(OrbitProblem(...))` gives an `
 """
 
 from .analysis import OrbitAnalysis, WhirlRange, analyse, initial_growth, whirl_range
-from .clearance import minimum_film
+from .clearance import contact_boundary, minimum_film
 from .equilibrium import find_equilibrium, linearize_force
 from .film_force import LoadedFilm, SolvedFilmForce, can_be_mapped, loaded_film
 from .film_map import cache_folder, film_force_map
@@ -72,6 +72,7 @@ __all__ = [
     "cascade",
     "concatenate",
     "constant_coefficients",
+    "contact_boundary",
     "film_force_map",
     "find_equilibrium",
     "fit_modes",

@@ -18,6 +18,52 @@ _BLOCK = 4096
 """Positions looked at together: bounds the memory."""
 
 
+def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
+    """Closed line of the journal's positions at which it touches the bush.
+
+    Parameters
+    ----------
+    bearing : Bearing
+        In the frame of the line.
+    count : int
+        Points on the line, the last one the first again.
+
+    Returns
+    -------
+    (count, 2) array
+        At mid-plane [m]; the clearance circle of the plain, aligned bearing.
+
+    Examples
+    --------
+    >>> from rotorsim.model import Bearing
+    >>> plain = Bearing(journal_radius=0.05, length=0.08, radial_clearance=1e-4)
+    >>> float(np.hypot(*contact_boundary(plain).T).max())
+    0.0001
+    """
+    phi = np.linspace(0.0, 2.0 * math.pi, count)
+    ray = np.column_stack([np.cos(phi), np.sin(phi)])
+    if bearing.is_plain and bearing.is_symmetric:
+        return bearing.radial_clearance * ray
+    theta = _land_angles(bearing)
+    bore = bearing.radial_clearance + bore_offset(bearing, theta)
+    normal = np.column_stack([np.cos(theta), np.sin(theta)])
+    towards = ray @ normal.T
+    reach = np.full(count, np.inf)
+    for end in _ends(bearing):
+        gap = bore - normal @ (np.asarray(bearing.tilt) * end)
+        # Along a ray each film falls linearly with the distance: the first to reach zero decides.
+        with np.errstate(divide="ignore"):
+            distance = np.where(towards > 0.0, gap / np.maximum(towards, 1e-12), np.inf)
+        reach = np.minimum(reach, distance.min(axis=1))
+    return reach[:, None] * ray
+
+
+def _ends(bearing: Bearing) -> tuple[float, ...]:
+    """Axial places at which a journal touches first [m]."""
+    half = 0.5 * bearing.length
+    return (0.0,) if bearing.is_symmetric else (-half, half)
+
+
 def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
     """Smallest film thickness [m] on the lands with the journal's centre at x, y [m].
 
@@ -40,8 +86,7 @@ def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
     bore = bearing.radial_clearance + bore_offset(bearing, theta)
     cos, sin = np.cos(theta), np.sin(theta)
     least = np.full(np.shape(x), np.inf)
-    ends = (0.0,) if bearing.is_symmetric else (-0.5 * bearing.length, 0.5 * bearing.length)
-    for end in ends:
+    for end in _ends(bearing):
         ex, ey = x + bearing.tilt[0] * end, y + bearing.tilt[1] * end
         for start in range(0, least.size, _BLOCK):
             part = slice(start, start + _BLOCK)

@@ -39,6 +39,15 @@ class BearingForce(Protocol):
         ...
 
 
+@runtime_checkable
+class ActuatedFilm(BearingForce, Protocol):
+    """A film with an actuator beside it: `force` is that of both."""
+
+    def actuator_force(self, x: ArrayLike, y: ArrayLike, vx: ArrayLike, vy: ArrayLike) -> Array:
+        """Force (n, 2) [N] of the actuator alone along (n,) positions and velocities."""
+        ...
+
+
 @dataclass(frozen=True)
 class CompiledForce:
     """A force as the compiled right-hand side takes it (see `rotorsim.orbit.kernels`)."""

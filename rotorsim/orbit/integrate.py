@@ -15,8 +15,8 @@ from scipy.integrate import solve_ivp
 
 from ..errors import InputError
 from .equilibrium import find_equilibrium
-from .forces import LinearForce
-from .loads import BaseMotion, HarmonicForce, pack_loads
+from .forces import ActuatedFilm, LinearForce
+from .loads import BaseMotion, HarmonicForce, load_on_rotor, pack_loads
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import OrbitProblem
 from .recognition import recognise
@@ -222,6 +222,17 @@ def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
     return _Run(problem, equilibrium, rates, film, tolerance, touch), state
 
 
+def _actuator_force(problem: OrbitProblem, motion: Array, y: Array) -> Array:
+    """Force of the actuator (n, 2) along (n, 5) motion, states y (k, n); zeros without one."""
+    if isinstance(problem.force, ActuatedFilm):
+        return problem.force.actuator_force(*motion[:, :4].T)
+    if problem.controller is None:
+        return np.zeros((len(motion), 2))
+    size = problem.rotor.mass.shape[0]
+    away = motion[:, :4] - np.array([*problem.controller.reference, 0.0, 0.0])
+    return problem.controller.force(y[2 * size :].T, away)
+
+
 def _edges(problem: OrbitProblem, revolutions: int) -> list[float]:
     """List where pieces end [s]: at whole revolutions and at corners of loads and speed."""
     schedule = problem.schedule
@@ -252,6 +263,9 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
     speed = problem.schedule.speed_at(t)
     motion = np.column_stack([y[0], y[1], y[size], y[size + 1], speed])
     film = run.film(motion)
+    actuator = _actuator_force(problem, motion, y)
+    if isinstance(problem.force, ActuatedFilm):
+        film = film - actuator
     status, message, events = OrbitStatus.COMPLETED, "", ()
     if solution.touch is not None:
         when, x, y_end = solution.touch
@@ -276,8 +290,11 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         angle=angles[:count],
         fx=film[:, 0],
         fy=film[:, 1],
+        load=load_on_rotor(problem.loads, problem.rotor, t),
+        actuator_force=actuator,
         displacements=np.ascontiguousarray(y[:size].T),
         min_film=problem.film_at(y[0], y[1]),
+        boundary=problem.boundary,
         samples_per_revolution=problem.samples_per_revolution,
         radial_clearance=problem.force.radial_clearance,
         equilibrium=run.equilibrium,

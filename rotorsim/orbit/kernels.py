@@ -164,6 +164,29 @@ def shaft(t: float, schedule: Array) -> tuple[float, float, float]:
 
 
 @numba.njit(cache=True)
+def _add_loads(t: float, force: Array, shapes: Array, times: Array) -> None:
+    for k in range(times.shape[0]):
+        if times[k, 1] <= t < times[k, 2]:
+            if times[k, 0] == 0.0:
+                c, s = 1.0, 0.0
+            elif times[k, 0] == 1.0:
+                c, s = math.cos(times[k, 3] * t), math.sin(times[k, 3] * t)
+            else:
+                c, s = math.sin(times[k, 3] * (t - times[k, 1])), 0.0
+            for i in range(force.size):
+                force[i] += shapes[k, 0, i] * c + shapes[k, 1, i] * s
+
+
+@numba.njit(cache=True)
+def load_series(t: Array, shapes: Array, times: Array) -> Array:
+    """Loads on every degree of freedom (n, 2k) [N] at times t (n,); see `loads.pack_loads`."""
+    out = np.zeros((t.size, shapes.shape[2]))
+    for i in range(t.size):
+        _add_loads(t[i], out[i], shapes, times)
+    return out
+
+
+@numba.njit(cache=True)
 def motion_rates(
     t: float,
     state: Array,
@@ -193,16 +216,7 @@ def motion_rates(
             c, s = math.cos(phi + unbalance[k, 1]), math.sin(phi + unbalance[k, 1])
             force[2 * k] += unbalance[k, 0] * (w * w * c + alpha * s)
             force[2 * k + 1] += unbalance[k, 0] * (w * w * s - alpha * c)
-    for k in range(times.shape[0]):
-        if times[k, 1] <= t < times[k, 2]:
-            if times[k, 0] == 0.0:
-                c, s = 1.0, 0.0
-            elif times[k, 0] == 1.0:
-                c, s = math.cos(times[k, 3] * t), math.sin(times[k, 3] * t)
-            else:
-                c, s = math.sin(times[k, 3] * (t - times[k, 1])), 0.0
-            for i in range(size):
-                force[i] += shapes[k, 0, i] * c + shapes[k, 1, i] * s
+    _add_loads(t, force, shapes, times)
     extra = state.size - 2 * size
     if controller.shape[0] > 0:
         _add_control(state, force, rates, controller, reference, size, extra)

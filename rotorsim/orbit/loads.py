@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
+from . import kernels
 from .rotor import RotorModel
 
 Array = NDArray[np.float64]
@@ -48,6 +49,10 @@ class Controller:
                     key=f"controller.{name}",
                     value=getattr(self, name).shape,
                 )
+
+    def force(self, state: Array, away: Array) -> Array:
+        """Force (n, 2) [N] from controller states (n, k) and the journal's s (n, 4)."""
+        return state @ self.c.T + away @ self.d.T
 
     @classmethod
     def state_feedback(cls, gain: Array, reference: tuple[float, float] = (0.0, 0.0)) -> Controller:
@@ -90,6 +95,13 @@ def pack_loads(loads: Sequence[Load], rotor: RotorModel) -> tuple[Array, Array]:
     return shapes, numbers
 
 
+def load_on_rotor(loads: Sequence[Load], rotor: RotorModel, t: Array) -> Array:
+    """Sum of the loads over all stations (n, 2) [N] at times t (n,)."""
+    shapes, numbers = pack_loads(loads, rotor)
+    every = kernels.load_series(np.asarray(t, dtype=float), shapes, numbers)
+    return every.reshape(len(t), rotor.stations, 2).sum(axis=1)
+
+
 def _check_station(station: int, rotor: RotorModel) -> None:
     if not 0 <= station < rotor.stations:
         raise InputError(
@@ -109,5 +121,6 @@ __all__ = [
     "HarmonicForce",
     "Load",
     "StepForce",
+    "load_on_rotor",
     "pack_loads",
 ]

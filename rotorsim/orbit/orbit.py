@@ -66,10 +66,18 @@ class Orbit:
         Of the shaft [rad]; revolutions are angle/(2 pi).
     fx, fy : (n,) arrays
         Film force on the journal [N].
+    load : (n, 2) array
+        What varies in time on the rotor: steps, harmonics, the moving base; summed over the
+        stations, without static load and unbalance [N].
+    actuator_force : (n, 2) array
+        On the journal [N]; zero without an actuator.
     displacements : (n, 2k) array
         Of all k stations of the rotor [m]; the first two columns are x and y.
     min_film : (n,) array
         Smallest film thickness [m]; c - e in a plain bearing.
+    boundary : (m, 2) array
+        Closed line of the positions where journal and bush touch [m]: the clearance circle of a
+        plain bearing.
     samples_per_revolution : int
     radial_clearance : float
         [m]
@@ -99,8 +107,11 @@ class Orbit:
     angle: Array
     fx: Array
     fy: Array
+    load: Array
+    actuator_force: Array
     displacements: Array
     min_film: Array
+    boundary: Array
     samples_per_revolution: int
     radial_clearance: float
     equilibrium: tuple[float, float]
@@ -118,6 +129,11 @@ class Orbit:
     def revolutions(self) -> Array:
         """Turns of the shaft at each sample [-]."""
         return self.angle / (2.0 * np.pi)
+
+    @property
+    def actuated(self) -> bool:
+        """Whether an actuator acts on the journal."""
+        return bool(np.any(self.actuator_force))
 
     @property
     def constant_speed(self) -> bool:
@@ -150,7 +166,10 @@ class Orbit:
         )
 
 
-_SERIES = ("t", "x", "y", "vx", "vy", "speed", "angle", "fx", "fy", "displacements", "min_film")
+_SERIES = (
+    "t", "x", "y", "vx", "vy", "speed", "angle", "fx", "fy", "load", "actuator_force",
+    "displacements", "min_film",
+)  # fmt: skip
 
 
 def concatenate(pieces: Iterable[Orbit]) -> Orbit:

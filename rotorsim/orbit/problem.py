@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model import Bearing
-from .clearance import minimum_film
+from .clearance import contact_boundary, minimum_film
 from .film_force import SolvedFilmForce
 from .forces import BearingForce, LinearForce
 from .loads import Controller, Load
@@ -112,6 +112,14 @@ class OrbitProblem:
         if self.bearing is None:
             return self.force.radial_clearance - np.hypot(x, y)
         return minimum_film(self.bearing, x, y)
+
+    @property
+    def boundary(self) -> Array:
+        """Closed line (m, 2) of the positions where journal and bush touch [m]."""
+        if self.bearing is None:
+            turn = np.linspace(0.0, 2.0 * math.pi, 361)
+            return self.force.radial_clearance * np.column_stack([np.cos(turn), np.sin(turn)])
+        return contact_boundary(self.bearing)
 
     def __post_init__(self) -> None:
         clearance = self.force.radial_clearance

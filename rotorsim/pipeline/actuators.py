@@ -6,14 +6,12 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..errors import InputError
 from ..scenario.settings import ActuatorSettings, Design
 from ..table import Coefficients
 
 if TYPE_CHECKING:
-    from ..orbit import BearingForce, Orbit, OrbitProblem
+    from ..orbit import OrbitProblem
     from ..stability.control import StateFeedback
 
 
@@ -88,13 +86,3 @@ def with_actuator(
         relative_tolerance=problem.tolerance,
         note="; ".join(filter(None, (problem.note, f"{settings.design.name} actuator {limited}"))),
     )
-
-
-def largest_force(force: BearingForce, orbit: Orbit) -> float | None:
-    """Largest force of one axis of the actuator along an orbit [N]; None without an actuator."""
-    from ..stability.actuator import ActuatedForce
-
-    if not isinstance(force, ActuatedForce) or not orbit.t.size:
-        return None
-    values = force.actuator_force(orbit.x, orbit.y, orbit.vx, orbit.vy)
-    return float(np.abs(values).max())

@@ -166,8 +166,7 @@ def study_control(
         ]
         held = orbits[1]
         assert held is not None
-        force = actuated.actuator_force(held.x, held.y, held.vx, held.vy)
-        largest = float(np.abs(force).max())
+        largest = float(np.abs(held.actuator_force).max())
     return ControlStudy(
         speed=speed,
         mass=mass,

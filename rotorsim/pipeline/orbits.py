@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..scenario.settings import OrbitForce, SpeedRamp
-from .actuators import largest_force, with_actuator
+from .actuators import with_actuator
 
 if TYPE_CHECKING:
     from ..model import Bearing
@@ -74,9 +74,9 @@ def simulate_orbit(
     problem = orbit_problem(scenario, table, thermal_model=thermal_model, schedule=schedule)
     keep = MAX_SAMPLES // problem.samples_per_revolution
     orbit = simulate(problem, consume=consume, keep_revolutions=keep)
-    most = largest_force(problem.force, orbit)
-    if most is None:
+    if settings.actuator is None or not orbit.t.size:
         return orbit
+    most = float(np.abs(orbit.actuator_force).max())
     return replace(orbit, message=f"{orbit.message}; largest actuator force {most:.4g} N")
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from rotorsim.errors import InputError
+from rotorsim.model import Arc, Bearing
 from rotorsim.orbit import (
     BaseMotion,
     BaseShock,
@@ -23,9 +24,11 @@ from rotorsim.orbit import (
     cascade,
     concatenate,
     constant_coefficients,
+    contact_boundary,
     fit_modes,
     growth_rate,
     jeffcott_rotor,
+    minimum_film,
     orbit_ellipse,
     poincare_points,
     recognise,
@@ -344,3 +347,37 @@ def test_poincare_points_are_one_a_turn_at_one_shaft_angle():
     np.testing.assert_allclose(points.angle % (2 * np.pi), np.pi / 2)
     assert points.t.size == 20
     assert np.ptp(points.x[-4:]) < 1e-4 * CLEARANCE
+
+
+def test_reported_loads_are_what_the_rotor_feels():
+    """Loads along an orbit against the acceleration that they give a free rotor."""
+    from rotorsim.orbit.loads import load_on_rotor
+
+    rotor = jeffcott_rotor(50.0, 5.0, 1e7)
+    loads = (
+        StepForce((3.0, -2.0), start=0.2, stop=0.6, station=1),
+        HarmonicForce((0.0, 7.0), frequency=40.0, phase=(0.0, 0.3)),
+        BaseShock((5.0, 1.0), start=0.5, duration=0.2),
+    )
+    t = np.linspace(0.0, 1.0, 201)
+    step = np.where((t >= 0.2) & (t < 0.6), 1.0, 0.0)
+    pulse = np.where((t >= 0.5) & (t < 0.7), np.sin(np.pi * (t - 0.5) / 0.2), 0.0)
+    expected = np.column_stack(
+        [3.0 * step - 55.0 * 5.0 * pulse, -2.0 * step + 7.0 * np.cos(40.0 * t + 0.3) - 55.0 * pulse]
+    )
+    assert load_on_rotor(loads, rotor, t) == pytest.approx(expected, abs=1e-9)
+    assert load_on_rotor((), rotor, t).shape == (201, 2)
+
+
+def test_contact_boundary_is_where_the_film_ends():
+    lobed = Bearing(
+        journal_radius=0.05,
+        length=0.08,
+        radial_clearance=1e-4,
+        arcs=(Arc(0.0, np.pi, preload=0.5), Arc(np.pi, 2.0 * np.pi, preload=0.5)),
+        tilt=(2e-4, 0.0),
+    )
+    line = contact_boundary(lobed)
+    assert line[0] == pytest.approx(line[-1])
+    assert np.abs(minimum_film(lobed, *line.T)).max() < 1e-3 * lobed.radial_clearance
+    assert minimum_film(lobed, *(0.9 * line.T)).min() > 0.0

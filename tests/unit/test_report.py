@@ -9,6 +9,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from scenario_texts import BEARING, CONSTANT_OIL
 
 from rotorsim.operating_point import OperatingPoint
 from rotorsim.orbit import Orbit, OrbitStatus
@@ -22,16 +23,12 @@ from rotorsim.status import SolveStatus
 from rotorsim.sweep import as_table, sweep_points
 
 VOID = {"meta", "link", "img", "br", "hr"}
-TEXT = """
+TEXT = f"""\
 title = "A <b>bearing</b> & more"
-[bearing]
-journal_radius = "50 mm"
-length = "80 mm"
-radial_clearance = "100 um"
-[lubricant]
-viscosity = "0.0277 Pa*s"
+{BEARING}
+{CONSTANT_OIL}
 [film]
-mesh = { circumferential = 32, axial = 8 }
+mesh = {{ circumferential = 32, axial = 8 }}
 [operating]
 speed = ["3000 rpm", "9000 rpm", "12000 rpm"]
 eccentricity_ratio = 0.5
@@ -173,7 +170,8 @@ def orbit() -> Orbit:
     zero = np.zeros_like(t)
     return Orbit(
         t=t, x=x, y=y, vx=zero, vy=zero, speed=np.full_like(t, 400.0 * np.pi), angle=angle,
-        fx=zero, fy=zero, displacements=np.column_stack([x, y]), samples_per_revolution=64,
+        fx=zero, fy=zero, load=np.zeros((t.size, 2)), actuator_force=np.zeros((t.size, 2)),
+        boundary=1e-4 * np.eye(2), displacements=np.column_stack([x, y]), samples_per_revolution=64,
         radial_clearance=1e-4, equilibrium=(0.0, 0.0), force_model="linear", thermal_model="thd",
         min_film=1e-4 - np.hypot(x, y), status=OrbitStatus.COMPLETED,
     )  # fmt: skip

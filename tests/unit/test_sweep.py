@@ -330,7 +330,7 @@ def test_killing_a_sweep_loses_no_finished_chunk_and_leaves_no_orphan(script, tm
     workers = {int(line.split()[0]) for line in calls.read_text().splitlines()}
     wait_until(lambda: not any(alive(pid) for pid in workers))
     finished = len(Journal(journal))
-    assert finished >= 2 * CHUNK
+    assert finished >= CHUNK + len(SPEEDS) % CHUNK  # one of the two may be a curve's last, short
     calls.unlink()
     out, err = script().communicate(timeout=60)
     assert [row[2] for row in rows_of(out)] == EXPECTED, err
