@@ -6,35 +6,20 @@ import time
 from pathlib import Path
 
 import pytest
+from scenario_texts import BEARING, BOTH_MODELS, OIL
 
 from rotorsim.errors import ScenarioError
 from rotorsim.scenario import Scenario, load_scenario
 
-GOOD = """\
+GOOD = f"""\
 title = "test"
-
-[bearing]
-journal_radius = "50 mm"
-length = "80 mm"
-radial_clearance = "100 um"
-
-[lubricant]
-viscosity = "0.0277 Pa*s"
-reference_temperature = "40 degC"
-viscosity_temperature_coefficient = "0.034 / delta_degC"
-density = "860 kg/m^3"
-specific_heat = "2000 J/(kg*delta_degC)"
-thermal_conductivity = "0.13 W/(m*delta_degC)"
-
+{BEARING}
+{OIL}
 [film]
-mesh = { circumferential = 64, axial = 16, cross_film = 12 }
-
-[thermal]
-models = ["isothermal", "thd"]
-ambient_temperature = "40 degC"
-
+mesh = {{ circumferential = 64, axial = 16, cross_film = 12 }}
+{BOTH_MODELS}
 [operating]
-speed = { start = "500 rpm", stop = "15000 rpm", count = 30 }
+speed = {{ start = "500 rpm", stop = "15000 rpm", count = 30 }}
 eccentricity_ratio = 0.5
 
 [rotor]

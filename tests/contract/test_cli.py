@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import strict
+from scenario_texts import BEARING, BOTH_MODELS, OIL
 
 ROOT = Path(__file__).parents[2]
 QUICK = ROOT / "scenarios" / "quick.toml"
@@ -28,26 +29,15 @@ POINT_KEYS = (
     "side_flow min_film_thickness stiffness damping critical_mass critical_mass_dimensionless "
     "whirl_frequency_ratio stability iterations residual"
 )
-TINY = """
+TINY = f"""\
 title = "tiny"
-[bearing]
-journal_radius = "50 mm"
-length = "80 mm"
-radial_clearance = "100 um"
-[lubricant]
-viscosity = "0.0277 Pa*s"
-reference_temperature = "40 degC"
-viscosity_temperature_coefficient = "0.034 / delta_degC"
-density = "860 kg/m^3"
-specific_heat = "2000 J/(kg*delta_degC)"
-thermal_conductivity = "0.13 W/(m*delta_degC)"
+{BEARING}
+{OIL}
 [film]
-mesh = { circumferential = 32, axial = 8, cross_film = 8 }
-[thermal]
-models = ["isothermal", "thd"]
-ambient_temperature = "40 degC"
+mesh = {{ circumferential = 32, axial = 8, cross_film = 8 }}
+{BOTH_MODELS}
 [operating]
-speed = { start = "6000 rpm", stop = "15000 rpm", count = 4 }
+speed = {{ start = "6000 rpm", stop = "15000 rpm", count = 4 }}
 eccentricity_ratio = 0.5
 [rotor]
 mass = "1200 kg"

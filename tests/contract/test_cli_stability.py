@@ -10,30 +10,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import CommandLine, strict
+from scenario_texts import BEARING, BOTH_MODELS, OIL
 
 from rotorsim.stability import rigid_threshold
 
 DATA = Path(__file__).parents[1] / "data"
-SCENARIO = """
+SCENARIO = f"""\
 title = "small"
-[bearing]
-journal_radius = "50 mm"
-length = "80 mm"
-radial_clearance = "100 um"
-[lubricant]
-viscosity = "0.0277 Pa*s"
-reference_temperature = "40 degC"
-viscosity_temperature_coefficient = "0.034 / delta_degC"
-density = "860 kg/m^3"
-specific_heat = "2000 J/(kg*delta_degC)"
-thermal_conductivity = "0.13 W/(m*delta_degC)"
+{BEARING}
+{OIL}
 [film]
-mesh = { circumferential = 32, axial = 8, cross_film = 8 }
-[thermal]
-models = ["isothermal", "thd"]
-ambient_temperature = "40 degC"
+mesh = {{ circumferential = 32, axial = 8, cross_film = 8 }}
+{BOTH_MODELS}
 [operating]
-speed = { start = "6000 rpm", stop = "15000 rpm", count = 4 }
+speed = {{ start = "6000 rpm", stop = "15000 rpm", count = 4 }}
 load = "10 kN"
 [rotor]
 mass = "300 kg"

@@ -12,18 +12,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import CommandLine, strict
+from scenario_texts import BEARING, CONSTANT_OIL
 
 ROOT = Path(__file__).parents[2]
-TINY = """
+TINY = f"""\
 title = "tiny"
-[bearing]
-journal_radius = "50 mm"
-length = "80 mm"
-radial_clearance = "100 um"
-[lubricant]
-viscosity = "0.0277 Pa*s"
+{BEARING}
+{CONSTANT_OIL}
 [film]
-mesh = { circumferential = 32, axial = 8 }
+mesh = {{ circumferential = 32, axial = 8 }}
 [operating]
 speed = ["6000 rpm", "9000 rpm"]
 eccentricity_ratio = 0.5

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scenario_texts import BEARING, BOTH_MODELS, OIL
 
 from rotorsim.errors import InputError, ScenarioError
 from rotorsim.model import LoadTarget, MeshSize
@@ -11,34 +12,25 @@ from rotorsim.scenario import Scenario
 from rotorsim.solver import solve_case
 from rotorsim.stability import RigidShaft, rigid_threshold, stability_map, threshold_speeds
 
-TEXT = """
-title = "small"
-[bearing]
-journal_radius = "50 mm"
-length = "80 mm"
-radial_clearance = "100 um"
+HEAD = f'title = "small"\n{BEARING}'
+GROOVE = """\
 [[bearing.groove]]
 center = "90 deg"
 extent = "20 deg"
 supply_temperature = "50 degC"
-[lubricant]
-viscosity = "0.0277 Pa*s"
-reference_temperature = "40 degC"
-viscosity_temperature_coefficient = "0.034 / delta_degC"
-density = "860 kg/m^3"
-specific_heat = "2000 J/(kg*delta_degC)"
-thermal_conductivity = "0.13 W/(m*delta_degC)"
+"""
+REST = f"""\
+{OIL}
 [film]
-mesh = { circumferential = 40, axial = 8, cross_film = 8 }
-[thermal]
-models = ["isothermal", "thd"]
-ambient_temperature = "40 degC"
+mesh = {{ circumferential = 40, axial = 8, cross_film = 8 }}
+{BOTH_MODELS}
 [operating]
 speed = ["6000 rpm", "9000 rpm", "12000 rpm", "15000 rpm"]
 load = "10 kN"
 [rotor]
 mass = "300 kg"
 """
+PLAIN, TEXT = HEAD + REST, HEAD + GROOVE + REST
 TOLERANCES = """
 [tolerances]
 radial_clearance = "8 um"
@@ -47,7 +39,6 @@ load = { spread = "2 %", distribution = "normal" }
 supply_temperature = "3 K"
 samples = 32
 """
-PLAIN = TEXT.replace(TEXT[TEXT.index("[[bearing") : TEXT.index("[lubricant]")], "")
 
 
 @pytest.fixture(scope="module")

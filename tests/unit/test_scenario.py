@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scenario_texts import BEARING, CONSTANT_OIL
 
 from rotorsim.errors import ScenarioError
 from rotorsim.film.geometry import bore_offset
@@ -26,13 +27,9 @@ from rotorsim.model import (
 from rotorsim.scenario import OrbitForce, Scenario, SpeedRamp, load_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
-MINIMAL = """
-[bearing]
-journal_radius = "50 mm"
-length = "80 mm"
-radial_clearance = "100 um"
-[lubricant]
-viscosity = "0.0277 Pa*s"
+MINIMAL = f"""\
+{BEARING}
+{CONSTANT_OIL}
 [operating]
 speed = "3000 rpm"
 load = "10 kN"
