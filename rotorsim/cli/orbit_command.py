@@ -62,9 +62,10 @@ def orbit(
 
     Example: rotorsim orbit scenarios/orbit_limit_cycle.toml --gif
     """
-    from ..pipeline import orbit_settings, record
+    from ..pipeline import orbit_settings
     from ..pipeline.orbit_pictures import write_animation, write_orbit_figures
     from ..pipeline.summary import describe_orbit
+    from ..pipeline.writing import record_scenario
     from ..scenario import load_scenario
 
     loaded = load_scenario(scenario)
@@ -76,7 +77,11 @@ def orbit(
     orbits = _simulate(output, loaded, coefficients, _models(loaded, coefficients, model), live)
     folder = Path("figures") / scenario.stem
     steady = steady or settings.steady_only
-    record(orbits, path, title=loaded.title)
+    _, missing = record_scenario(
+        loaded, orbits, path, table=coefficients, announce=output.note, workers=workers
+    )
+    for reason in missing:
+        output.warn(f"left out of the recording: {reason}")
     written = write_orbit_figures(orbits, folder, loaded.title, steady) if figures else []
     for wanted, suffix in ((gif, ".gif"), (mp4, ".mp4")):
         if wanted:

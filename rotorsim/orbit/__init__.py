@@ -7,7 +7,13 @@ Everything is SI and in the load frame. `simulate(OrbitProblem(...))` gives an `
 from .analysis import OrbitAnalysis, WhirlRange, analyse, initial_growth, whirl_range
 from .clearance import contact_boundary, minimum_film
 from .equilibrium import find_equilibrium, linearize_force
-from .film_force import LoadedFilm, SolvedFilmForce, can_be_mapped, loaded_film
+from .film_force import (
+    LoadedFilm,
+    SolvedFilmForce,
+    can_be_mapped,
+    loaded_film,
+    operating_film,
+)
 from .film_map import cache_folder, film_force_map
 from .force_map import FilmMapForce, ForceMap
 from .forces import (
@@ -82,6 +88,7 @@ __all__ = [
     "linearize_force",
     "loaded_film",
     "minimum_film",
+    "operating_film",
     "orbit_ellipse",
     "poincare_points",
     "recognise",

@@ -14,6 +14,7 @@ from ..film.banded import SingularFilmError
 from ..film.layers import LayerIntegrals
 from ..film.problem import FilmProblem, film_state
 from ..film.solution import FilmSolution, solve_film
+from ..film.state import FilmState
 from ..model import Bearing, Case, EccentricityTarget, Inception, LoadTarget, ThermalModel
 from ..status import SolveStatus
 from .clearance import minimum_film
@@ -82,8 +83,25 @@ class SolvedFilmForce:
         """Radial clearance [m]."""
         return self.bearing.radial_clearance
 
+    @classmethod
+    def of(cls, case: Case, solution: FilmSolution) -> SolvedFilmForce:
+        """Force of the film that was solved for `case`, its viscosity field kept."""
+        return cls(
+            problem=solution.problem,
+            layers=solution.state.layers,
+            frame=solution.frame,
+            bearing=case.bearing,
+            name="film" if solution.thermal is None else "film_frozen_viscosity",
+        )
+
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
         """Film force [N]; ArithmeticError where the film cannot be solved."""
+        fx, fy = self.film(x, y, vx, vy, speed).force
+        cos, sin = math.cos(self.frame), math.sin(self.frame)
+        return float(fx * cos - fy * sin), float(fx * sin + fy * cos)
+
+    def film(self, x: float, y: float, vx: float, vy: float, speed: float) -> FilmState:
+        """Film with the journal there, in the problem's frame; ArithmeticError as `force`."""
         x, y = self._within(x, y)
         cos, sin = math.cos(self.frame), math.sin(self.frame)
         problem = self.problem
@@ -100,8 +118,7 @@ class SolvedFilmForce:
             self._full = None
             raise SingularFilmError("the rupture condition was not met in the steps allowed")
         self._full = state.solution.full
-        fx, fy = state.force
-        return float(fx * cos - fy * sin), float(fx * sin + fy * cos)
+        return state
 
     def _within(self, x: float, y: float) -> tuple[float, float]:
         """Pull a position that touches the bush back towards the centre."""
@@ -149,23 +166,15 @@ def loaded_film(
     """
     if can_be_mapped(case):
         return _mapped(case, speed, cache, progress)
-    solution = _operating_film(case, speed)
+    solution = operating_film(case, speed)
     load = float(np.hypot(*solution.state.force))
     rpm = f"{speed * 30.0 / math.pi:.0f} rpm"
-    heated = solution.thermal is not None
     notes = ["film solved at each step"]
-    if heated:
+    if solution.thermal is not None:
         notes.append(f"viscosity field of the operating point at {rpm}, frozen")
     if solution.problem.mesh.slot.any():
         notes.append(f"p = 0 held where the film is thickest at {rpm}")
-    force = SolvedFilmForce(
-        problem=solution.problem,
-        layers=solution.state.layers,
-        frame=solution.frame,
-        bearing=case.bearing,
-        name="film_frozen_viscosity" if heated else "film",
-    )
-    return LoadedFilm(force, load, case.bearing, "; ".join(notes))
+    return LoadedFilm(SolvedFilmForce.of(case, solution), load, case.bearing, "; ".join(notes))
 
 
 def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | None) -> LoadedFilm:
@@ -187,7 +196,8 @@ def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | N
     return LoadedFilm(force, load, bearing, note)
 
 
-def _operating_film(case: Case, speed: float) -> FilmSolution:
+def operating_film(case: Case, speed: float) -> FilmSolution:
+    """Film at rest about which an orbit runs, at `speed` [rad/s]; InputError without one."""
     try:
         solution = solve_film(case, speed)
     except SingularFilmError as error:

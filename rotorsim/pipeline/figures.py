@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .orbit_pictures import orbit_figures
-from .recordings import eigenvalue_path
 from .stability import map_planes
 
 if TYPE_CHECKING:
@@ -103,14 +102,8 @@ def _maps(results: Results) -> Iterator[tuple[str, Figure]]:
 def _eigenvalues(results: Results) -> Iterator[tuple[str, Figure]]:
     from ..plots import EigenvalueCurve, eigenvalue_plot
 
-    paths = [
-        eigenvalue_path(curve, str(curve.choices["thermal_model"]))
-        for curve in results.shown_curves
-    ]
     shown: Sequence[EigenvalueCurve] = [
-        EigenvalueCurve(path.name, path.speed, path.eigenvalues)
-        for path in paths
-        if path is not None
+        EigenvalueCurve(path.name, path.speed, path.eigenvalues) for path in results.eigenvalues
     ]
     if shown:
         yield "eigenvalues", eigenvalue_plot(shown, results.scenario.title)

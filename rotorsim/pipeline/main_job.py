@@ -14,13 +14,15 @@ from ..errors import InputError, RotorsimError
 from ..model.rotor import rigid_mass
 from ..scenario.settings import OrbitForce, SpeedRamp
 from . import orbits as orbit_steps
+from .film_motion import film_in_motion
+from .rotors import rotor_on_film
 from .stability import StabilityCurve, stability_curves
 from .summary import describe_orbit, expected_growth, heating_effect
 
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
     from ..orbit import Orbit
-    from ..recording import FilmSurface
+    from ..recording import EigenvaluePath, FilmSurface
     from ..scenario import Scenario
     from ..stability.map import StabilityMap
     from ..table import CoefficientTable
@@ -47,7 +49,10 @@ class Results:
     orbits : tuple of Orbit
         Each thermal model at constant speed, then each through the run-up.
     films : tuple of FilmSurface
-        In the orbit's clearance, ascending speed for each thermal model.
+        In the orbit's clearance: for each thermal model at rest, ascending in speed, and along an
+        orbit on the nonlinear film, ascending in time.
+    eigenvalues : tuple of EigenvaluePath
+        Of the scenario's rotor over speed in the orbit's clearance, for each thermal model.
     problems : tuple of str
         What went wrong, where, and what to do.
     """
@@ -59,6 +64,7 @@ class Results:
     chart: StabilityMap | None = None
     orbits: tuple[Orbit, ...] = ()
     films: tuple[FilmSurface, ...] = ()
+    eigenvalues: tuple[EigenvaluePath, ...] = ()
     problems: tuple[str, ...] = ()
 
     @property
@@ -67,20 +73,9 @@ class Results:
         return rigid_mass(self.scenario.rotor)
 
     @property
-    def shown_curves(self) -> list[StabilityCurve]:
-        """Curves in the orbit's clearance; without an orbit, in the first one."""
-        settings = self.scenario.orbit
-        wanted = settings.radial_clearance if settings else self.scenario.radial_clearances[0]
-        return [
-            curve
-            for curve in self.curves
-            if np.isclose(curve.choices["radial_clearance"], wanted, rtol=1e-6, atol=0.0)
-        ]
-
-    @property
     def films_at_top_speed(self) -> list[FilmSurface]:
-        """Last film of each thermal model."""
-        return list({film.name: film for film in self.films}.values())
+        """Film at rest at the highest speed, of each thermal model."""
+        return list({film.name: film for film in self.films if film.time is None}.values())
 
 
 @dataclass
@@ -110,33 +105,28 @@ def compute(
     points: Sequence[OperatingPoint],
     table: CoefficientTable,
     announce: Announce = lambda _text: None,
+    orbits: Sequence[Orbit] | None = None,
 ) -> Results:
-    """Do everything that follows from the table; nothing is written."""
+    """Do everything that follows from the table; nothing is written.
+
+    With `orbits` those are taken for the scenario's, and none is simulated.
+    """
     attempt = Attempts(announce)
     mass = rigid_mass(scenario.rotor)
-    curves = attempt("critical mass and eigenvalues", lambda: stability_curves(table, mass), [])
+    curves = attempt("critical mass", lambda: stability_curves(table, mass), [])
+    paths = attempt("eigenvalues", lambda: eigenvalue_paths(scenario, table), [])
     chart = attempt("stability map", lambda: map_of(scenario, table), None)
-    orbits: list[Orbit] = []
     films: list[FilmSurface] = []
     if scenario.orbit is not None:
         settings, _ = orbit_steps.orbit_settings(scenario)
-        ramped = isinstance(settings.speed, SpeedRamp)
-        # A nonlinear film is simulated as the scenario says and no further: it takes its time.
-        # An actuator is designed for one speed: no run-up beside it.
-        alone = settings.force is not OrbitForce.LINEAR or settings.actuator is not None
-        for companion in (False,) if alone else (False, True):
-            for model in scenario.thermal_models:
-                kind = "changing" if ramped != companion else "constant"
-                label = f"orbit at {kind} speed, {model.value}"
-                orbit = attempt(
-                    label,
-                    lambda model=model, companion=companion: one_orbit(
-                        scenario, table, model.value, companion
-                    ),
-                    None,
-                )
-                orbits += [] if orbit is None else [orbit]
+        if orbits is None:
+            orbits = simulated_orbits(scenario, table, attempt)
         films = attempt("film fields", lambda: film_frames(scenario, settings.radial_clearance), [])
+        if settings.force is OrbitForce.FILM:
+            for orbit in orbits:
+                label = f"film along the orbit, {orbit.thermal_model}"
+                films += attempt(label, lambda orbit=orbit: film_in_motion(scenario, orbit), [])
+    orbits = orbits or ()
     return Results(
         scenario=scenario,
         table=table,
@@ -145,8 +135,31 @@ def compute(
         chart=chart,
         orbits=tuple(orbits),
         films=tuple(films),
+        eigenvalues=tuple(paths),
         problems=tuple(attempt.problems),
     )
+
+
+def simulated_orbits(scenario: Scenario, table: CoefficientTable, attempt: Attempts) -> list[Orbit]:
+    """The scenario's orbit with each thermal model, and on a linear film its companion."""
+    settings, _ = orbit_steps.orbit_settings(scenario)
+    ramped = isinstance(settings.speed, SpeedRamp)
+    orbits: list[Orbit] = []
+    # A nonlinear film is simulated as the scenario says and no further: it takes its time.
+    # An actuator is designed for one speed: no run-up beside it.
+    alone = settings.force is not OrbitForce.LINEAR or settings.actuator is not None
+    for companion in (False,) if alone else (False, True):
+        for model in scenario.thermal_models:
+            kind = "changing" if ramped != companion else "constant"
+            orbit = attempt(
+                f"orbit at {kind} speed, {model.value}",
+                lambda model=model, companion=companion: one_orbit(
+                    scenario, table, model.value, companion
+                ),
+                None,
+            )
+            orbits += [] if orbit is None else [orbit]
+    return orbits
 
 
 def one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion: bool) -> Orbit:
@@ -182,6 +195,37 @@ def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
             raise InputError("needs masses: no mass is critical here", key="stability.mass")
         middle = float(np.median(known))
     return stability_map(table, np.linspace(0.05, 3.0, MAP_CELLS) * middle, speeds)
+
+
+def eigenvalue_paths(scenario: Scenario, table: CoefficientTable) -> list[EigenvaluePath]:
+    """Eigenvalues of the scenario's rotor over speed, for each thermal model of the table.
+
+    In the orbit's clearance; without an orbit in the first one.
+    """
+    from ..recording import EigenvaluePath
+    from ..stability.over_speed import converged_speeds, rotor_modes, rotor_thresholds
+
+    rotor, settings = rotor_on_film(scenario.rotor), scenario.orbit
+    if rotor is None:
+        return []
+    clearance = settings.radial_clearance if settings else scenario.radial_clearances[0]
+    paths = []
+    for model in (str(name) for name in table.dataset["thermal_model"].values):
+        one = table.select(thermal_model=model, radial_clearance=clearance)
+        if converged_speeds(one).size < 2:
+            continue
+        branches, thresholds = rotor_modes(one, rotor), rotor_thresholds(one, rotor)
+        first = thresholds[0] if thresholds else None
+        paths.append(
+            EigenvaluePath(
+                name=model,
+                speed=branches.parameter,
+                eigenvalues=branches.eigenvalues,
+                threshold_speed=None if first is None else first.speed,
+                whirl_frequency_ratio=None if first is None else first.whirl_frequency_ratio,
+            )
+        )
+    return paths
 
 
 def film_frames(scenario: Scenario, clearance: float) -> list[FilmSurface]:

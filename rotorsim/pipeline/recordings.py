@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .summary import describe_orbit
+from .wording import RPM
+
 if TYPE_CHECKING:
     from ..orbit import Orbit
-    from ..recording import CascadePicture, EigenvaluePath, OrbitTrack
-    from .stability import StabilityCurve
+    from ..recording import CascadePicture, OrbitTrack, SpectrumPicture
 
+MICRO = 1e6
 
 CASCADE_LINES = 400
 """Frequencies of a cascade, up to twice the highest shaft speed."""
@@ -40,19 +43,78 @@ def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "O
     contents = RecordingContents(
         title=title,
         summary=orbit_notes(several),
+        kind=several[0].kind if several else "",
         orbits=tuple(orbit_tracks(several)),
         cascades=tuple(cascade_pictures(several)),
+        spectra=tuple(spectrum_pictures(several)),
     )
     return write_recording(path, contents)
 
 
 def orbit_notes(orbits: Sequence[Orbit]) -> str:
-    """How each run ended and what its film force takes for granted, as Markdown."""
-    return "\n".join(
-        f"- {track.heading}: {orbit.status.value.replace('_', ' ')}"
-        + (f" ({orbit.message})" if orbit.message else "")
-        for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True)
+    """What each run shows, how it ended, and what its film force takes for granted, as Markdown."""
+    lines: list[str] = []
+    for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
+        row = describe_orbit(orbit)
+        first, last = (round(speed * RPM) for speed in row["speed"])
+        rpm = f"{first} rpm" if first == last else f"{first} to {last} rpm"
+        lines.append(
+            f"- **{track.heading}, {rpm}, {row['revolutions']:.4g} turns:"
+            f" {orbit.status.value.replace('_', ' ')}**"
+        )
+        lines += [f"  - {fact}" for fact in _seen(row)]
+        lines += [f"  - {orbit.message}"] if orbit.message else []
+    return "\n".join(lines)
+
+
+def _seen(row: dict[str, Any]) -> list[str]:
+    """What an orbit shows in numbers, a line each."""
+    facts = []
+    if row["growth_rate"] is not None:
+        word = "grow" if row["growth_rate"] > 0.0 else "decay"
+        facts.append(f"small motions {word} at {row['growth_rate']:+.4g} 1/s")
+    if row["whirl"] is not None:
+        whirl = row["whirl"]
+        facts.append(
+            f"{whirl['direction']} whirl at {whirl['order']:.4f} of the shaft's speed, ellipse"
+            f" {whirl['semi_major'] * MICRO:.4g} x {whirl['semi_minor'] * MICRO:.4g} µm"
+        )
+    if row["whirl_range"] is not None:
+        found = row["whirl_range"]
+        facts.append(
+            f"whirls from {found['first_speed'] * RPM:.0f} to {found['last_speed'] * RPM:.0f} rpm,"
+            f" most at {found['strongest_speed'] * RPM:.0f} rpm: {found['amplitude'] * MICRO:.3g}"
+            f" µm at {found['frequency'] / (2.0 * np.pi):.4g} Hz"
+        )
+    facts.append(
+        f"thinnest film {row['min_film'] * MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
     )
+    return facts
+
+
+def spectrum_pictures(orbits: Sequence[Orbit]) -> list[SpectrumPicture]:
+    """Spectrum of the steady part of each run at constant speed that does not come to rest."""
+    from ..errors import InputError
+    from ..orbit import OrbitStatus, spectrum, steady_part
+    from ..recording import SpectrumPicture
+
+    pictures = []
+    for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
+        if not orbit.constant_speed or orbit.status is OrbitStatus.SETTLED or not orbit.t.size:
+            continue
+        try:
+            found = spectrum(steady_part(orbit) or orbit)
+        except InputError:  # too short a run for a spectrum
+            continue
+        pictures.append(
+            SpectrumPicture(
+                name=track.name,
+                speed=float(orbit.speed[0]),
+                frequency=found.frequency,
+                amplitude=found.forward + found.backward,
+            )
+        )
+    return pictures
 
 
 def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
@@ -100,50 +162,32 @@ def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
                 radial_clearance=orbit.radial_clearance,
                 equilibrium=np.asarray(orbit.equilibrium),
                 force=np.column_stack([orbit.fx, orbit.fy]),
+                load=orbit.load if np.any(orbit.load) else None,
+                actuator_force=orbit.actuator_force if orbit.actuated else None,
+                minimum_film=orbit.min_film,
+                boundary=orbit.boundary,
+                once_per_turn=once_per_turn(orbit),
                 title=_heading(name),
             )
         )
     return tracks
 
 
+def once_per_turn(orbit: Orbit) -> np.ndarray | None:
+    """Poincare points (k, 2) of the steady part [m]; None where there is none."""
+    from ..orbit import OrbitStatus, poincare_points, steady_part
+
+    if orbit.status not in (
+        OrbitStatus.PERIODIC, OrbitStatus.LIMIT_CYCLE, OrbitStatus.QUASI_PERIODIC,
+    ):  # fmt: skip
+        return None
+    steady = steady_part(orbit)
+    if steady is None or not steady.t.size:
+        return None
+    points = poincare_points(steady)
+    return np.column_stack([points.x, points.y])
+
+
 def _heading(name: str) -> str:
     words = name.replace("_", " ").replace("run up", "run-up").replace("coast down", "coast-down")
     return words.replace("thd", "THD")
-
-
-def eigenvalue_path(curve: StabilityCurve, name: str) -> EigenvaluePath | None:
-    """Eigenvalues of one curve, branch by branch; None where there are none to show."""
-    from ..recording import EigenvaluePath
-
-    if curve.eigenvalues is None:
-        return None
-    known = np.isfinite(curve.eigenvalues).all(axis=1)
-    if known.sum() < 2:
-        return None
-    threshold = curve.threshold_speeds[0] if curve.threshold_speeds else None
-    ratio = None
-    if threshold is not None:
-        usable = np.isfinite(curve.whirl_frequency_ratio)
-        ratio = float(
-            np.interp(threshold, curve.speed[usable], curve.whirl_frequency_ratio[usable])
-        )
-    return EigenvaluePath(
-        name=name,
-        speed=curve.speed[known],
-        eigenvalues=follow_branches(curve.eigenvalues[known]),
-        threshold_speed=threshold,
-        whirl_frequency_ratio=ratio,
-    )
-
-
-def follow_branches(eigenvalues: np.ndarray) -> np.ndarray:
-    """Reorder each row of (n, k) eigenvalues so that every column is one continuous branch."""
-    from scipy.optimize import linear_sum_assignment
-
-    ordered = eigenvalues.copy()
-    for row in range(1, len(ordered)):
-        # Where two steps are known the next is guessed on their line: branches may cross.
-        guess = ordered[row - 1] if row < 2 else 2.0 * ordered[row - 1] - ordered[row - 2]
-        distance = np.abs(guess[:, None] - eigenvalues[row][None, :])
-        ordered[row] = eigenvalues[row][linear_sum_assignment(distance)[1]]
-    return ordered

@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .figures import write_figures
-from .main_job import Announce, Attempts, Results, summary
-from .recordings import cascade_pictures, eigenvalue_path, orbit_tracks
+from .main_job import Announce, Attempts, Results, compute, summary
+from .orbits import orbit_settings
+from .recordings import cascade_pictures, orbit_notes, orbit_tracks, record, spectrum_pictures
 from .stability import map_planes
 from .wording import KELVIN, RPM
 
 if TYPE_CHECKING:
+    from ..orbit import Orbit
     from ..recording import MapPicture, RecordingContents
+    from ..scenario import Scenario
+    from ..table import CoefficientTable
+
+SURROUNDING_SPEEDS = 12
+"""Of the table that is computed for an orbit's recording alone."""
 
 
 def write_results(
@@ -48,19 +59,58 @@ def recording_contents(results: Results) -> RecordingContents:
     """Everything that the recording shows."""
     from ..recording import RecordingContents
 
-    paths = [
-        eigenvalue_path(curve, str(curve.choices["thermal_model"]))
-        for curve in results.shown_curves
-    ]
+    settings = results.scenario.orbit
     return RecordingContents(
         title=results.scenario.title,
         summary=markdown_summary(results),
+        kind="" if settings is None else settings.kind.value,
         orbits=tuple(orbit_tracks(results.orbits)),
         films=results.films,
-        eigenvalues=tuple(path for path in paths if path is not None),
+        eigenvalues=results.eigenvalues,
         maps=tuple(map_pictures(results)),
         cascades=tuple(cascade_pictures(results.orbits)),
+        spectra=tuple(spectrum_pictures(results.orbits)),
     )
+
+
+def record_scenario(
+    scenario: Scenario,
+    orbits: Sequence[Orbit],
+    path: Path,
+    *,
+    table: CoefficientTable | None = None,
+    announce: Announce = lambda _text: None,
+    workers: int | None = None,
+) -> tuple[Path, list[str]]:
+    """Write orbits with what surrounds them: film, eigenvalues, stability map.
+
+    Without `table` one of the orbit's clearance is computed at some of the scenario's speeds.
+
+    Returns
+    -------
+    Path
+        The file written.
+    list of str
+        What is missing in it, and why.
+    """
+    attempt = Attempts(announce)
+    if table is None:
+        table = attempt("coefficients", lambda: surrounding_table(scenario, workers), None)
+    if table is None:
+        return record(orbits, path, title=scenario.title), attempt.problems
+    results = compute(scenario, (), table, announce, orbits)
+    return write_recording_of(results, path), [*attempt.problems, *results.problems]
+
+
+def surrounding_table(scenario: Scenario, workers: int | None = None) -> CoefficientTable:
+    """Table of the orbit's clearance at up to `SURROUNDING_SPEEDS` of the scenario's speeds."""
+    from ..sweep import tabulate
+
+    speeds, settings = scenario.speeds, orbit_settings(scenario)[0]
+    count = min(speeds.size, SURROUNDING_SPEEDS)
+    chosen = np.unique(np.linspace(0, speeds.size - 1, count).round().astype(int))
+    one = replace(scenario, radial_clearances=(settings.radial_clearance,), speeds=speeds[chosen])
+    return tabulate(one, workers=workers)
 
 
 def map_pictures(results: Results) -> list[MapPicture]:
@@ -71,7 +121,7 @@ def map_pictures(results: Results) -> list[MapPicture]:
         return []
     return [
         MapPicture(
-            title=f"c = {plane.radial_clearance * 1e6:.4g} um",
+            title=f"rigid rotor, c = {plane.radial_clearance * 1e6:.4g} um",
             speed=plane.speed,
             mass=plane.mass,
             verdict=classify(plane.isothermal_decay, plane.heated_decay),
@@ -112,7 +162,7 @@ def markdown_summary(results: Results) -> str:
     """The closing words as Markdown, for the recording."""
     facts = summary(results, {})
     counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
-    lines = [*conclusion(facts), f"Film points: {counted}.", ""]
+    lines = [*conclusion(facts), *([f"Film points: {counted}.", ""] if counted else [])]
     for row in facts["heating"]:
         lines += [
             f"## c = {row['radial_clearance'] * 1e6:.4g} um, {row['speed'] * RPM:.0f} rpm",
@@ -131,8 +181,4 @@ def markdown_summary(results: Results) -> str:
                     f"{critical} |"
                 )
         lines.append("")
-    for row in facts["orbits"]:
-        grows = row["growth_rate"]
-        rate = "" if grows is None else f", growth {grows:.4g} 1/s"
-        lines.append(f"- Orbit {row['thermal_model']}, {row['kind']}: {row['status'].value}{rate}")
-    return "\n".join(lines)
+    return "\n".join([*lines, orbit_notes(results.orbits)])

@@ -11,6 +11,7 @@ from .contents import (
     MapPicture,
     OrbitTrack,
     RecordingContents,
+    SpectrumPicture,
     Verdict,
     classify,
 )
@@ -24,6 +25,7 @@ __all__ = [
     "MapPicture",
     "OrbitTrack",
     "RecordingContents",
+    "SpectrumPicture",
     "Verdict",
     "ViewerLaunch",
     "classify",

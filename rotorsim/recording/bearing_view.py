@@ -46,11 +46,11 @@ def log_bush(stream: rr.RecordingStream, root: str, film: FilmSurface) -> None:
 def log_journal(
     stream: rr.RecordingStream,
     root: str,
-    frames: Sequence[FilmSurface],
+    films: Sequence[FilmSurface],
     track: OrbitTrack | None,
 ) -> None:
     """Write the shaft with a mark on it, and its motion on every timeline."""
-    film = frames[0]
+    film, frames = films[0], [one for one in films if one.time is None]
     radius = film.journal_radius * surfaces.MILLI
     half = 0.5 * film.length * surfaces.MILLI * 1.25
     vertices, triangles, normals = surfaces.cylinder(radius, half)
@@ -76,13 +76,14 @@ def log_journal(
         static=True,
     )
     scale = surfaces.exaggeration(film) * surfaces.MILLI
-    centres = np.array([[*f.centre, 0.0] for f in frames]) * scale
+    centres = np.array([[*f.centre, 0.0] for f in frames]).reshape(-1, 3) * scale
     speeds = [f.speed for f in frames]
-    stream.send_columns(
-        entity,
-        [speed_index(speeds)],
-        rr.Transform3D.columns(translation=centres.astype(np.float32)),
-    )
+    if speeds:
+        stream.send_columns(
+            entity,
+            [speed_index(speeds)],
+            rr.Transform3D.columns(translation=centres.astype(np.float32)),
+        )
     if track is not None:
         _send_motion(stream, entity, track, scale)
 

@@ -66,6 +66,7 @@ def colours(values: ArrayLike, low: float, high: float, name: str = "viridis") -
 
 def model_colour(name: str) -> tuple[int, int, int]:
     """One colour for all that belongs to one model or run, the same in every view."""
-    if name in MODEL_COLOURS:
-        return MODEL_COLOURS[name]
+    for model, colour in MODEL_COLOURS.items():
+        if name == model or name.startswith(f"{model}_"):
+            return colour
     return _OTHER_COLOURS[sum(name.encode()) % len(_OTHER_COLOURS)]

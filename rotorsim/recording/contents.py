@@ -6,7 +6,7 @@ direction of rotation); units change only where a value is written.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
@@ -40,6 +40,16 @@ class OrbitTrack:
         Static position of the journal's centre [m].
     force : (n, 2) array, optional
         Film force on the journal [N].
+    load : (n, 2) array, optional
+        What varies in time on the rotor: steps, harmonics, the moving base [N].
+    actuator_force : (n, 2) array, optional
+        On the journal [N].
+    minimum_film : (n,) array, optional
+        Film thickness where it is least [m]. Default: of the plain, aligned bearing.
+    boundary : (m, 2) array, optional
+        Closed line on which journal and bush touch [m]. Default: the clearance circle.
+    once_per_turn : (k, 2) array, optional
+        Positions at each whole turn of the shaft in the steady part (Poincare points) [m].
     title : str
         For people; the name where empty.
     """
@@ -53,13 +63,19 @@ class OrbitTrack:
     radial_clearance: float
     equilibrium: Array | None = None
     force: Array | None = None
+    load: Array | None = None
+    actuator_force: Array | None = None
+    minimum_film: Array | None = None
+    boundary: Array | None = None
+    once_per_turn: Array | None = None
     title: str = ""
 
     def __post_init__(self) -> None:
         for key in ("x", "y", "angle", "speed"):
             _same_length(self.name, key, getattr(self, key), self.time)
-        if self.force is not None:
-            _same_length(self.name, "force", self.force, self.time)
+        for key in ("force", "load", "actuator_force", "minimum_film"):
+            if getattr(self, key) is not None:
+                _same_length(self.name, key, getattr(self, key), self.time)
         if self.time.size < 2 or not np.all(np.diff(self.time) > 0.0):
             raise InputError(
                 "a track needs two or more samples in ascending time", key=f"{self.name}.time"
@@ -86,14 +102,29 @@ class OrbitTrack:
         return np.hypot(self.x, self.y) / self.radial_clearance
 
     @property
-    def minimum_film(self) -> Array:
-        """Of the plain, aligned bearing: clearance less eccentricity [m]."""
+    def thinnest_film(self) -> Array:
+        """Film thickness where it is least [m]."""
+        if self.minimum_film is not None:
+            return self.minimum_film
         return self.radial_clearance - np.hypot(self.x, self.y)
+
+    @property
+    def contact_line(self) -> Array:
+        """Closed line on which journal and bush touch [m]."""
+        if self.boundary is not None:
+            return self.boundary
+        turn = np.linspace(0.0, 2.0 * np.pi, 181)
+        return self.radial_clearance * np.column_stack([np.cos(turn), np.sin(turn)])
+
+    @property
+    def reach(self) -> float:
+        """Farthest that the journal can go from the bearing's centre [m]."""
+        return float(np.hypot(*self.contact_line.T).max())
 
 
 @dataclass(frozen=True)
 class FilmSurface:
-    """Pressure and temperature of the film at one speed.
+    """Pressure and temperature of the film at one speed, or at one moment of a run.
 
     Attributes
     ----------
@@ -113,6 +144,8 @@ class FilmSurface:
         [m]
     centre : (2,) array
         Journal's centre [m].
+    time : float, optional
+        The moment in the run of the track of this name [s]; None: journal at rest.
     """
 
     name: str
@@ -124,6 +157,7 @@ class FilmSurface:
     journal_radius: float
     radial_clearance: float
     centre: Array
+    time: float | None = None
 
     @property
     def length(self) -> float:
@@ -291,16 +325,44 @@ class CascadePicture:
 
 
 @dataclass(frozen=True)
+class SpectrumPicture:
+    """Spectrum of a motion at constant speed.
+
+    Attributes
+    ----------
+    name : str
+        Of the track.
+    speed : float
+        Of the shaft [rad/s].
+    frequency : (m,) array
+        Ascending [rad/s].
+    amplitude : (m,) array
+        [m]
+    """
+
+    name: str
+    speed: float
+    frequency: Array
+    amplitude: Array
+
+
+@dataclass(frozen=True)
 class RecordingContents:
-    """Everything that one recording shows; what is empty leaves its view out."""
+    """Everything that one recording shows; what is empty leaves its view out.
+
+    `kind` is that of the scenario's orbit (``run_up``, ``step``, ...) and decides what the overview
+    shows; empty: the whole job, from film to map.
+    """
 
     title: str
     summary: str = ""
+    kind: str = ""
     orbits: tuple[OrbitTrack, ...] = ()
     films: tuple[FilmSurface, ...] = ()
     eigenvalues: tuple[EigenvaluePath, ...] = ()
     maps: tuple[MapPicture, ...] = ()
-    cascades: tuple[CascadePicture, ...] = field(default=())
+    cascades: tuple[CascadePicture, ...] = ()
+    spectra: tuple[SpectrumPicture, ...] = ()
 
 
 def model_label(name: str) -> str:

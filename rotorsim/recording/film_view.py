@@ -31,7 +31,18 @@ def log_films(
         for quantity in scales:
             if shows(quantity, frames):
                 log_scale(stream, f"{root}/{quantity.name}", quantity, frames[0])
-                _send_frames(stream, f"{root}/{quantity.name}", quantity, frames, tracks)
+                shown = frames if quantity.name == "pressure" else changing(frames)
+                _send_frames(stream, f"{root}/{quantity.name}", quantity, shown, tracks)
+
+
+def changing(frames: Sequence[FilmSurface]) -> list[FilmSurface]:
+    """Frames without those whose temperature is that of the frame before (it is kept in a run)."""
+    before = [None, *frames[:-1]]
+    return [
+        frame
+        for frame, last in zip(frames, before, strict=True)
+        if last is None or frame.time is None or frame.temperature is not last.temperature
+    ]
 
 
 def film_view(name: str, quantity: Quantity, film: FilmSurface) -> rrb.Spatial3DView:
@@ -89,10 +100,10 @@ def _send_frames(
         "unwrapped": [surfaces.unwrapped(f, h) for f, h in zip(frames, heights, strict=True)],
     }
     peaks = [
-        f"{tick_text(round(film.speed * RPM))} rpm, max {value.max():.3g} {quantity.unit}"
+        f"{_moment(film)}, max {value.max():.3g} {quantity.unit}"
         for film, value in zip(frames, values, strict=True)
     ]
-    places = indices_of_frames(tracks, frames[0].name, [film.speed for film in frames])
+    places = indices_of_frames(tracks, frames)
     for shape, vertices in shapes.items():
         entity = f"{root}/{shape}/{quantity.entity}"
         triangles = surfaces.grid_triangles()
@@ -106,6 +117,12 @@ def _send_frames(
             )
             stream.send_columns(entity, index, columns.partition([count] * len(which)))
             _send_caption(stream, f"{root}/{shape}/frame", frames[0], shape, peaks, index, which)
+
+
+def _moment(film: FilmSurface) -> str:
+    if film.time is None:
+        return f"{tick_text(round(film.speed * RPM))} rpm"
+    return f"{film.time:.4f} s"
 
 
 def _send_caption(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -13,12 +14,49 @@ from .contents import OrbitTrack, RecordingContents
 from .eigenvalue_view import eigenvalue_view
 from .orbit_view import orbit_view, zoom_reach
 from .quantities import film_names, frames_of, quantities, shows
+from .series_view import (
+    ACTUATOR_FORCE,
+    DISPLACEMENT,
+    ECCENTRICITY,
+    LOAD,
+    MINIMUM_FILM,
+    SPEED_SERIES,
+    WHIRL,
+    Series,
+)
+from .spectrum_view import spectrum_view
 from .timeline import SPEED, TIME
 
 Part: TypeAlias = rrb.View | rrb.Container
 REVOLUTIONS_PER_SECOND = 3.0
 """Turns of the shaft in one second of watching."""
 PAGES = ("Overview", "Orbits", "Film", "Stability", "Time series")
+
+
+@dataclass(frozen=True)
+class Front:
+    """What the overview of one kind of scenario shows beside orbits, film, map and summary.
+
+    Series that a run does not have are left out; `frequencies`: its spectrum or cascade.
+    """
+
+    series: tuple[Series, ...]
+    frequencies: bool = False
+
+
+WHOLE_JOB = Front((ECCENTRICITY, ACTUATOR_FORCE))
+_PUSHED = Front((LOAD, ACTUATOR_FORCE, DISPLACEMENT, MINIMUM_FILM))
+_PASSING = Front((DISPLACEMENT, SPEED_SERIES, WHIRL), frequencies=True)
+FRONTS = {
+    "free_decay": Front((ECCENTRICITY, WHIRL, ACTUATOR_FORCE)),
+    "unbalance": Front((DISPLACEMENT, MINIMUM_FILM, ACTUATOR_FORCE), frequencies=True),
+    "harmonic": Front((LOAD, ACTUATOR_FORCE, DISPLACEMENT), frequencies=True),
+    "step": _PUSHED,
+    "base_motion": _PUSHED,
+    "run_up": _PASSING,
+    "coast_down": _PASSING,
+}
+"""By the kind of the scenario's orbit; any other: `WHOLE_JOB`."""
 
 
 def layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint:
@@ -84,7 +122,7 @@ def _grouped(contents: RecordingContents, make: Callable[[list[OrbitTrack]], Par
     parts: list[Part] = []
     for name, group in _groups(contents):
         parts.append(_named(make(group), name))
-    return rrb.Tabs(*parts) if len(parts) > 1 else parts[0]
+    return _tabs(parts)
 
 
 def _film_views(contents: RecordingContents, flat: bool) -> list[Part]:
@@ -105,18 +143,32 @@ def _map_views(contents: RecordingContents) -> list[Part]:
     return [map_view.map_view(picture, i) for i, picture in enumerate(contents.maps)]
 
 
+def _cascade_views(contents: RecordingContents) -> list[Part]:
+    return [map_view.cascade_view(picture, i) for i, picture in enumerate(contents.cascades)]
+
+
 def _overview(contents: RecordingContents) -> Part:
-    middle: list[Part] = _film_views(contents, flat=False)[-2:]
+    front = FRONTS.get(contents.kind, WHOLE_JOB)
+    middle: list[Part] = []
+    if front.frequencies and contents.spectra:
+        middle.append(spectrum_view(len(contents.spectra)))
+    if front.frequencies and contents.cascades:
+        middle.append(_tabs(_cascade_views(contents)))
+    films = _film_views(contents, flat=False)
+    if middle and films:
+        middle.append(_tabs(films))
+    else:
+        middle += films[-2:] if len(films) > 1 else [*films, *_film_views(contents, flat=True)]
     stability = _map_views(contents)[:1]
     if contents.eigenvalues:
         stability.append(eigenvalue_view())
     right: list[Part] = [_summary_view()]
     if stability:
-        right.append(rrb.Tabs(*stability) if len(stability) > 1 else stability[0])
+        right.append(_tabs(stability))
     columns: list[Part] = []
     widths: list[float] = []
     if contents.orbits:
-        columns.append(_grouped(contents, _orbits_and_eccentricity))
+        columns.append(_grouped(contents, lambda tracks: _orbits_and_series(tracks, front.series)))
         widths.append(1.8)
     for parts, width in ((middle, 0.95), (right, 1.25)):
         if parts:
@@ -125,11 +177,19 @@ def _overview(contents: RecordingContents) -> Part:
     return rrb.Horizontal(*columns, column_shares=widths, name="Overview")
 
 
-def _orbits_and_eccentricity(tracks: list[OrbitTrack]) -> Part:
+def _tabs(parts: Sequence[Part]) -> Part:
+    return rrb.Tabs(*parts) if len(parts) > 1 else parts[0]
+
+
+def _orbits_and_series(tracks: list[OrbitTrack], wanted: tuple[Series, ...]) -> Part:
+    plots = [series_view.series_view(one, tracks) for one in series_view.series_of(tracks, wanted)]
+    views = [orbit_view(track) for track in tracks]
+    if len(tracks) == 1 and tracks[0].constant_speed:
+        views.append(orbit_view(tracks[0], zoom=zoom_reach(tracks)))
     return rrb.Vertical(
-        rrb.Horizontal(*[orbit_view(track) for track in tracks]),
-        series_view.series_view(series_view.ECCENTRICITY, tracks),
-        row_shares=[2.2, 1.0],
+        rrb.Horizontal(*views),
+        *plots,
+        row_shares=[2.2 if len(plots) < 3 else 1.8, *[1.0 / len(plots) ** 0.5] * len(plots)],
     )
 
 
@@ -163,12 +223,13 @@ def _film(contents: RecordingContents) -> Part | None:
 def _stability(contents: RecordingContents) -> Part | None:
     parts: list[Part] = []
     if contents.maps:
-        parts.append(rrb.Tabs(*_map_views(contents)))
+        parts.append(_tabs(_map_views(contents)))
     if contents.eigenvalues:
         parts.append(eigenvalue_view())
+    if contents.spectra:
+        parts.append(spectrum_view(len(contents.spectra)))
     if contents.cascades:
-        views = [map_view.cascade_view(p, i) for i, p in enumerate(contents.cascades)]
-        parts.append(rrb.Tabs(*views))
+        parts.append(_tabs(_cascade_views(contents)))
     return rrb.Grid(*parts, grid_columns=2, name="Stability") if parts else None
 
 
@@ -179,4 +240,5 @@ def _time_series(contents: RecordingContents) -> Part | None:
 
 
 def _all_series(tracks: list[OrbitTrack]) -> Part:
-    return rrb.Vertical(*[series_view.series_view(s, tracks) for s in series_view.ALL_SERIES])
+    shown = series_view.series_of(tracks)
+    return rrb.Vertical(*[series_view.series_view(one, tracks) for one in shown])

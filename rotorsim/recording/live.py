@@ -93,8 +93,12 @@ def _joined(before: OrbitTrack, piece: OrbitTrack) -> OrbitTrack:
         name: np.concatenate([getattr(before, name)[-1:], getattr(piece, name)])
         for name in ("time", "x", "y", "angle", "speed")
     }
-    if before.force is not None and piece.force is not None:
-        joined["force"] = np.concatenate([before.force[-1:], piece.force])
+    for name in ("force", "load", "actuator_force", "minimum_film"):
+        last, new = getattr(before, name), getattr(piece, name)
+        if new is not None:
+            # What a run began without (a load, say) was zero until now.
+            last = np.zeros_like(new[:1]) if last is None else last[-1:]
+            joined[name] = np.concatenate([last, new])
     return replace(piece, **joined)
 
 

@@ -92,8 +92,8 @@ def log_cascade(stream: rr.RecordingStream, picture: CascadePicture, number: int
         place = chart.place(reach, order * reach / 60.0) + np.array([0.05, -0.02])
         log_labels(stream, f"{root}/order_label_{text}", [place], [text])
     peak = 10.0**high * MICRO
-    note = f"amplitude: bright {peak:.3g} µm, each quarter of the scale 10 times less"
-    log_labels(stream, f"{root}/note", [[WIDTH / 2, 0.21]], [note])
+    notes = [f"brightest: {peak:.3g} µm", "a quarter of the colours darker: a tenth"]
+    log_labels(stream, f"{root}/note", [[WIDTH / 2, 0.21], [WIDTH / 2, 0.31]], notes)
 
 
 def cascade_view(picture: CascadePicture, number: int) -> rrb.Spatial2DView:
@@ -101,7 +101,7 @@ def cascade_view(picture: CascadePicture, number: int) -> rrb.Spatial2DView:
     return rrb.Spatial2DView(
         origin=f"/cascade/{number}",
         name=f"Spectrum cascade: {picture.title}",
-        visual_bounds=chart_bounds(0.1),
+        visual_bounds=chart_bounds(0.2),
     )
 
 

@@ -13,7 +13,7 @@ import rerun.blueprint as rrb
 from numpy.typing import ArrayLike, NDArray
 
 from .chart import log_labels
-from .colormaps import FAINT, LINE, TEXT, model_colour
+from .colormaps import ALARM, FAINT, LINE, TEXT, model_colour
 from .contents import OrbitTrack
 from .timeline import REVOLUTIONS, SAMPLE_LIMIT, TIME, send_track, thin
 
@@ -88,7 +88,7 @@ def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DVie
         Half-width of a close-up about the static position [m]; else the whole clearance circle.
     """
     root = orbit_entity(track.name)
-    reach = (1.32 * track.radial_clearance if zoom is None else zoom) * MICRO
+    reach = (1.32 * track.reach if zoom is None else zoom) * MICRO
     x0, y0 = (0.0, 0.0) if zoom is None else middle_of(track)
     centre = view_points(x0, y0).astype(float)
     # The force's scale belongs to the whole circle.
@@ -118,26 +118,25 @@ def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DVie
 
 
 def log_surroundings(stream: rr.RecordingStream, track: OrbitTrack) -> None:
-    """Write what stands still: clearance circle, axes, labels, static position."""
+    """Write what stands still: contact line, axes, labels, static position, Poincare points."""
     root = orbit_entity(track.name)
-    clearance = track.radial_clearance * MICRO
-    turn = np.linspace(0.0, 2.0 * np.pi, 181)
-    circle = clearance * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-    arrow = clearance * 1.1
+    reach = track.reach * MICRO
+    line = view_points(*track.contact_line.T)
+    arrow = reach * 1.1
     stream.log(
-        f"{root}/clearance_circle_um",
-        rr.LineStrips2D([circle], radii=rr.Radius.ui_points(1.2), colors=TEXT),
+        f"{root}/clearance_um",
+        rr.LineStrips2D([line], radii=rr.Radius.ui_points(1.2), colors=TEXT),
         static=True,
     )
-    cross = [[[-clearance, 0], [clearance, 0]], [[0, -clearance], [0, clearance]]]
+    cross = [[[-reach, 0], [reach, 0]], [[0, -reach], [0, reach]]]
     stream.log(
         f"{root}/axes",
         rr.LineStrips2D(cross, radii=rr.Radius.ui_points(0.4), colors=FAINT),
         static=True,
     )
     arc = np.radians(np.linspace(35.0, 58.0, 24))
-    turning = 1.12 * clearance * np.stack([np.cos(arc), -np.sin(arc)], axis=-1)
-    head = turning[-1] + 0.06 * clearance * np.array([[0.95, -0.3], [0.0, 0.0], [0.25, 0.95]])
+    turning = 1.12 * reach * np.stack([np.cos(arc), -np.sin(arc)], axis=-1)
+    head = turning[-1] + 0.06 * reach * np.array([[0.95, -0.3], [0.0, 0.0], [0.25, 0.95]])
     stream.log(
         f"{root}/rotation",
         rr.LineStrips2D([turning, head], radii=rr.Radius.ui_points(1.0), colors=LINE),
@@ -146,8 +145,8 @@ def log_surroundings(stream: rr.RecordingStream, track: OrbitTrack) -> None:
     log_labels(
         stream,
         f"{root}/labels",
-        [[arrow, -0.04 * clearance], [0, -1.2 * clearance], [0, 1.06 * clearance]],
-        ["x, load", "y", f"clearance circle, c = {clearance:.4g} µm"],
+        [[arrow, -0.04 * reach], [0, -1.2 * reach], [0, 1.06 * reach]],
+        ["x, load", "y", f"journal touches, c = {track.radial_clearance * MICRO:.4g} µm"],
         LINE,
     )
     if track.equilibrium is not None:
@@ -155,6 +154,17 @@ def log_surroundings(stream: rr.RecordingStream, track: OrbitTrack) -> None:
         stream.log(
             f"{root}/equilibrium_um",
             rr.Points2D([place], radii=rr.Radius.ui_points(2.5), colors=LINE, draw_order=45.0),
+            static=True,
+        )
+    if track.once_per_turn is not None and len(track.once_per_turn):
+        stream.log(
+            f"{root}/once_per_turn_um",
+            rr.Points2D(
+                view_points(*track.once_per_turn.T),
+                radii=rr.Radius.ui_points(1.3),
+                colors=ALARM,
+                draw_order=40.0,
+            ),
             static=True,
         )
 

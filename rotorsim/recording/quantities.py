@@ -13,6 +13,8 @@ from .contents import FilmSurface
 
 Array = NDArray[np.float64]
 CELSIUS = 273.15
+MOVING_SHARE = 0.95
+"""Of the moments of a run, whose peak pressures the scale holds."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,11 @@ class Quantity:
 
 def quantities(films: Sequence[FilmSurface]) -> list[Quantity]:
     """Scales that hold for all films together, so that colours may be compared."""
-    pressure = max(float(film.pressure.max()) for film in films) / 1e6
+    resting = [float(film.pressure.max()) for film in films if film.time is None]
+    moving = [float(film.pressure.max()) for film in films if film.time is not None]
+    # A journal about to touch would leave every other moment colourless.
+    usual = float(np.quantile(moving, MOVING_SHARE)) if moving else 0.0
+    pressure = max([usual, *resting]) / 1e6
     found = [Quantity("pressure", "MPa", 0.0, max(pressure, 1e-9), "viridis")]
     warm = [film.temperature - CELSIUS for film in films if film.temperature is not None]
     if warm:
@@ -60,8 +66,12 @@ def film_names(films: Sequence[FilmSurface]) -> list[str]:
 
 
 def frames_of(films: Sequence[FilmSurface], name: str) -> list[FilmSurface]:
-    """Films of one model by ascending speed."""
-    return sorted((film for film in films if film.name == name), key=lambda film: film.speed)
+    """Frames of one model: those at rest by ascending speed, then those of a run in time."""
+    own = (film for film in films if film.name == name)
+    return sorted(
+        own,
+        key=lambda film: (False, film.speed) if film.time is None else (True, film.time),
+    )
 
 
 def shows(quantity: Quantity, frames: Sequence[FilmSurface]) -> bool:

@@ -17,6 +17,8 @@ from .timeline import REVOLUTIONS, RPM, SAMPLE_LIMIT, TIME, send_track, thin
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 MICRO = 1e6
+STANDSTILL = 1e-5
+"""Clearances per turn of the shaft below which a journal counts as at rest."""
 ENVELOPE_LIMIT = 40_000
 """Slowly varying series keep the least and the largest sample of each of half as many stretches."""
 WINDOW_LIMIT = 50_000
@@ -37,13 +39,20 @@ class Series:
 DISPLACEMENT = Series("displacement_um", "Displacement x, y [µm]")
 ECCENTRICITY = Series("eccentricity_ratio", "Eccentricity ratio [-]", 0.0, 1.05)
 MINIMUM_FILM = Series("minimum_film_um", "Minimum film thickness [µm]")
+LOAD = Series("load_N", "Load on the rotor x, y [N]")
+ACTUATOR_FORCE = Series("actuator_force_N", "Actuator force x, y [N]")
 SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]")
 WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", 0.0, 1.2)
-ALL_SERIES = (DISPLACEMENT, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL)
+ALL_SERIES = (
+    LOAD, ACTUATOR_FORCE, DISPLACEMENT, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
+)  # fmt: skip
 
 
 def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
-    """Count turns of the journal's centre about its static position per turn of the shaft.
+    """Count turns of the journal's velocity per turn of the shaft.
+
+    The velocity turns as often as the journal goes round, wherever the orbit's centre is: that
+    moves in a run through the speeds.
 
     Parameters
     ----------
@@ -54,19 +63,21 @@ def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
     Returns
     -------
     (n,) array
-        [-]; negative for backward whirl. NaN where the shaft does not turn.
+        [-]; negative for backward whirl. NaN where the journal or the shaft stands still.
     """
-    middle = track.equilibrium
-    if middle is None:
-        middle = np.array([track.x.mean(), track.y.mean()])
-    phase = np.unwrap(np.arctan2(track.y - middle[1], track.x - middle[0]))
-    turns = track.revolutions
-    if not np.all(np.diff(turns) > 0.0):
-        return np.full(track.time.size, np.nan)
+    turns, count = track.revolutions, track.time.size
+    if not np.all(np.diff(turns) > 0.0) or count < 4:
+        return np.full(count, np.nan)
+    z = (track.x + 1j * track.y) / track.radial_clearance
+    velocity = np.gradient(z, turns)
+    phase = np.unwrap(np.angle(velocity))
+    # One-sided differences at the ends are less exact than their neighbours.
+    phase[0], phase[-1] = 2.0 * phase[1] - phase[2], 2.0 * phase[-2] - phase[-3]
     before = np.clip(turns - 0.5 * revolutions, turns[0], turns[-1])
     after = np.clip(turns + 0.5 * revolutions, turns[0], turns[-1])
     swept = np.interp(after, turns, phase) - np.interp(before, turns, phase)
-    return swept / (2.0 * np.pi * (after - before))
+    ratio = swept / (2.0 * np.pi * (after - before))
+    return np.where(np.abs(velocity) > STANDSTILL, ratio, np.nan)
 
 
 def envelope_rows(values: Array, limit: int = ENVELOPE_LIMIT) -> Indices:
@@ -90,19 +101,35 @@ def log_series(stream: rr.RecordingStream, track: OrbitTrack) -> None:
     """Write every series of one track."""
     colour = model_colour(track.name)
     pale = tuple(int(0.5 * c + 110) for c in colour)
-    position = np.stack([track.x, track.y], axis=-1) * MICRO
     every = thin(track.time.size, SAMPLE_LIMIT)
-    names = [f"x [µm], {track.heading}", f"y [µm], {track.heading}"]
-    _send(stream, DISPLACEMENT, track, position, every, names, [colour, pale])
+    pairs = (
+        (DISPLACEMENT, "µm", np.stack([track.x, track.y], axis=-1) * MICRO),
+        (LOAD, "N", track.load),
+        (ACTUATOR_FORCE, "N", track.actuator_force),
+    )
+    for series, unit, values in pairs:
+        if values is not None:
+            names = [f"{axis} [{unit}], {track.heading}" for axis in "xy"]
+            _send(stream, series, track, values, every, names, [colour, pale])
     single = (
         (ECCENTRICITY, track.eccentricity_ratio),
-        (MINIMUM_FILM, track.minimum_film * MICRO),
+        (MINIMUM_FILM, track.thinnest_film * MICRO),
         (SPEED_SERIES, track.speed * RPM),
         (WHIRL, whirl_ratio(track)),
     )
     for series, values in single:
         rows = envelope_rows(values)
         _send(stream, series, track, values[:, None], rows, [track.heading], [colour])
+
+
+def series_of(tracks: Sequence[OrbitTrack], wanted: Sequence[Series] = ALL_SERIES) -> list[Series]:
+    """Those of the wanted series that the tracks have."""
+    kept = []
+    for series in wanted:
+        field = {LOAD: "load", ACTUATOR_FORCE: "actuator_force"}.get(series)
+        if field is None or any(getattr(track, field) is not None for track in tracks):
+            kept.append(series)
+    return kept
 
 
 def series_view(series: Series, tracks: Sequence[OrbitTrack]) -> rrb.TimeSeriesView:
@@ -146,11 +173,18 @@ def _send(
 def _vertical_range(series: Series, tracks: Sequence[OrbitTrack]) -> tuple[float, float]:
     if series.low is not None and series.high is not None:
         return series.low, series.high
-    clearance = max(track.radial_clearance for track in tracks) * MICRO
+    for one, field in ((LOAD, "load"), (ACTUATOR_FORCE, "actuator_force")):
+        if series is one:
+            known = [getattr(track, field) for track in tracks if getattr(track, field) is not None]
+            most = max((float(np.abs(values).max()) for values in known), default=0.0)
+            return -1.1 * max(most, 1e-9), 1.1 * max(most, 1e-9)
     if series is DISPLACEMENT:
-        return -1.05 * clearance, 1.05 * clearance
+        both = [values for track in tracks for values in (track.x, track.y)]
+        low, high = (min(map(np.min, both)) * MICRO, max(map(np.max, both)) * MICRO)
+        margin = max(0.08 * (high - low), 1e-3 * tracks[0].reach * MICRO)
+        return float(low - margin), float(high + margin)
     if series is MINIMUM_FILM:
-        return 0.0, 1.05 * clearance
+        return 0.0, 1.1 * max(float(track.thinnest_film.max()) for track in tracks) * MICRO
     return 0.0, 1.1 * max(float(track.speed.max()) for track in tracks) * RPM
 
 

@@ -16,7 +16,7 @@ from .contents import FilmSurface
 Array = NDArray[np.float64]
 MILLI = 1e3
 
-AROUND, ALONG = 120, 24
+AROUND, ALONG = 96, 16
 """Display grid: cells around and along the bearing (the films' own grids may differ)."""
 DRAWN_CLEARANCE = 0.22
 """Clearance as drawn, in journal radii."""

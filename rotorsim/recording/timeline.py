@@ -9,7 +9,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import ArrayLike, NDArray
 
-from .contents import OrbitTrack
+from .contents import FilmSurface, OrbitTrack
 
 TIME = "time"
 """Seconds of the simulation."""
@@ -97,30 +97,35 @@ def frame_rows(track: OrbitTrack, frame_speeds: ArrayLike) -> tuple[Indices, Ind
 
 
 def indices_of_frames(
-    tracks: Sequence[OrbitTrack], name: str, frame_speeds: ArrayLike
+    tracks: Sequence[OrbitTrack], frames: Sequence[FilmSurface]
 ) -> list[tuple[list[rr.TimeColumn], Indices]]:
-    """Where frames over speed stand on every timeline.
+    """Where the frames of one model stand on every timeline.
 
     Parameters
     ----------
     tracks : sequence of OrbitTrack
-        The track called `name` places the frames in time; else the first one; else none.
-    name : str
-    frame_speeds : array_like (k,)
-        Ascending [rad/s].
+        The track of the frames' name places them in time; else the first one; else none.
+    frames : sequence of FilmSurface
+        Those at rest by ascending speed, then those of the run by ascending time. Without the
+        latter the frame of the nearest speed stands for the run.
 
     Returns
     -------
     list of (index columns, frame numbers)
         One entry to send per set of timelines.
     """
-    known = np.asarray(frame_speeds, dtype=float)
-    places = [([speed_index(known)], np.arange(known.size))]
-    track = pick_track(tracks, name)
-    if track is not None:
-        rows, frames = frame_rows(track, known)
-        places.append((track_index(track, rows), frames))
-    return places
+    known = np.array([frame.speed for frame in frames if frame.time is None])
+    times = np.array([frame.time for frame in frames if frame.time is not None])
+    places = [([speed_index(known)], np.arange(known.size))] if known.size else []
+    track = pick_track(tracks, frames[0].name)
+    if track is None:
+        return places
+    if times.size:
+        turns = np.interp(times, track.time, track.revolutions)
+        index = [time_index(times), revolution_index(turns)]
+        return [*places, (index, known.size + np.arange(times.size))]
+    rows, numbers = frame_rows(track, known)
+    return [*places, (track_index(track, rows), numbers)]
 
 
 def pick_track(tracks: Sequence[OrbitTrack], name: str) -> OrbitTrack | None:

@@ -15,6 +15,7 @@ from .layout import layout
 from .map_view import log_cascade, log_map
 from .orbit_view import log_orbit
 from .series_view import log_series
+from .spectrum_view import log_spectra
 from .timeline import SAMPLE_LIMIT
 
 APPLICATION = "rotorsim"
@@ -70,6 +71,8 @@ def log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> Non
         log_map(stream, picture, number, contents.orbits)
     for number, cascade in enumerate(contents.cascades):
         log_cascade(stream, cascade, number)
+    if contents.spectra:
+        log_spectra(stream, contents.spectra)
 
 
 def _notes(contents: RecordingContents) -> str:
@@ -79,10 +82,17 @@ def _notes(contents: RecordingContents) -> str:
         "- Timelines: `time` [s], `milli-revolutions` (1000 is one turn of the shaft) and"
         " `speed_rpm` (film and eigenvalues from speed to speed).",
         "- Orbits: x along the load, y 90 degrees ahead in the direction of rotation"
-        " (counter-clockwise); the circle is the radial clearance.",
+        " (counter-clockwise); at the white line the journal touches the bush.",
         "- Bearing: true proportions but for the clearance, whose exaggeration is written there;"
         " the film's height is its pressure or temperature.",
     ]
+    if any(track.once_per_turn is not None for track in contents.orbits):
+        lines.append("- Red points: the journal once per turn of the shaft, in the steady part.")
+    if any(film.time is not None for film in contents.films):
+        lines.append(
+            "- The film follows the journal in the first and the last turns; between them it is"
+            " shown at some whole turns of the shaft. Its caption says when."
+        )
     thinned = [t.heading for t in contents.orbits if t.time.size > SAMPLE_LIMIT]
     if thinned:
         lines.append(

@@ -9,7 +9,6 @@ from rotorsim.errors import InputError
 from rotorsim.pipeline import orbits as orbit_steps
 from rotorsim.pipeline.main_job import Attempts, compute
 from rotorsim.pipeline.orbits import static_position
-from rotorsim.pipeline.recordings import follow_branches
 from rotorsim.pipeline.stability import crossings, stability_curves
 from rotorsim.pipeline.writing import write_results
 from rotorsim.records import failed_point
@@ -53,17 +52,6 @@ def test_crossings_of_a_known_function():
     assert crossings(lambda x: x + 1.0, 0.0, 10.0) == ()
     assert crossings(lambda x: np.where(x < 5.0, np.nan, 1.0), 0.0, 10.0) == ()
     assert crossings(np.cos, 3.0, 3.0) == ()
-
-
-def test_branches_are_followed_through_a_crossing():
-    step = np.linspace(-1.0, 1.0, 41)
-    branches = np.column_stack([1j + step, 1j - step * 0.9, -1.0 + 0j * step])
-    shuffled = np.array(
-        [np.random.default_rng(row).permutation(values) for row, values in enumerate(branches)]
-    )
-    followed = follow_branches(shuffled)
-    order = [int(np.abs(branches[0] - first).argmin()) for first in followed[0]]
-    assert np.array_equal(followed, branches[:, order])
 
 
 def test_threshold_speed_is_where_the_critical_mass_is_the_rotors(scenario, points):

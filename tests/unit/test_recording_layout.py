@@ -1,0 +1,163 @@
+"""What a recording shows first, by the kind of its scenario, read back from the file."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from rerun.chunk import RrdReader
+
+from rotorsim.recording import (
+    CascadePicture,
+    FilmSurface,
+    OrbitTrack,
+    RecordingContents,
+    SpectrumPicture,
+    write_recording,
+)
+from rotorsim.recording.film_view import changing
+from rotorsim.recording.quantities import quantities
+from rotorsim.recording.series_view import whirl_ratio
+from rotorsim.scenario.settings import OrbitKind
+
+C = 1e-4
+COUNT = 801
+
+
+def track(top: float = 800.0, **more) -> OrbitTrack:
+    t = np.linspace(0.0, 0.2, COUNT)
+    speed = np.linspace(800.0, top, COUNT)
+    angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(t))])
+    x, y = 3e-5 + 2e-5 * np.cos(0.5 * angle), 4e-5 + 2e-5 * np.sin(0.5 * angle)
+    return OrbitTrack("isothermal", t, x, y, angle, speed, C, np.array([3e-5, 4e-5]), **more)
+
+
+def film(time: float | None, peak: float = 1e6, temperature=None) -> FilmSurface:
+    theta, y = (np.arange(40) + 0.5) * np.pi / 20, (np.arange(8) - 3.5) * 1e-2
+    pressure = peak * np.clip(np.cos(theta), 0.0, None)[:, None] * (1.0 - (y / 0.04) ** 2)
+    return FilmSurface(
+        "isothermal", 800.0, theta, y, pressure, temperature, 0.05, C, np.zeros(2), time
+    )
+
+
+def contents(kind: str, orbit: OrbitTrack) -> RecordingContents:
+    frequency = np.linspace(0.0, 2000.0, 50)
+    passing = not orbit.constant_speed
+    cascade = CascadePicture("", np.array([800.0, 900.0]), frequency, np.full((2, 50), 1e-6))
+    spectrum = SpectrumPicture("isothermal", 800.0, frequency, np.full(50, 1e-6))
+    return RecordingContents(
+        "test",
+        kind=kind,
+        orbits=(orbit,),
+        films=(film(None), film(0.0), film(0.1)),
+        cascades=(cascade,) if passing else (),
+        spectra=() if passing else (spectrum,),
+    )
+
+
+def overview(path) -> set[str]:
+    """Names, up to a colon, of the views on the page that the file opens with."""
+    reader = RrdReader(path)
+    parts: dict[str, dict[str, list]] = {}
+    for chunk in reader.stream(store=reader.blueprints()[0]):
+        batch = chunk.to_record_batch()
+        for name in batch.schema.names:
+            values = batch.column(name).to_pylist()[-1]
+            part = parts.setdefault(str(chunk.entity_path).lstrip("/"), {})
+            part[name.split(":")[-1]] = values
+
+    def views(place: str) -> set[str]:
+        part = parts[place]
+        if place.startswith("view/"):
+            return {str(part["display_name"][0]).split(":")[0]}
+        return set().union(*(views(child) for child in part["contents"]))
+
+    (front,) = (part["active_tab"][0] for part in parts.values() if "active_tab" in part)
+    assert parts[front]["display_name"] == ["Overview"]
+    return views(front)
+
+
+ALWAYS = {"Orbit", "What is seen", "Film pressure [MPa]"}
+DISPLACEMENT, MINIMUM_FILM = "Displacement x, y [µm]", "Minimum film thickness [µm]"
+LOAD, ACTUATOR = "Load on the rotor x, y [N]", "Actuator force x, y [N]"
+WHIRL, SPECTRUM = "Whirl frequency / shaft frequency [-]", "Spectrum of the steady motion"
+
+
+@pytest.mark.parametrize(
+    ("kind", "shown", "hidden"),
+    [
+        ("", {"Eccentricity ratio [-]"}, {WHIRL, LOAD}),
+        ("free_decay", {"Eccentricity ratio [-]", WHIRL}, {LOAD, SPECTRUM}),
+        ("unbalance", {DISPLACEMENT, MINIMUM_FILM, SPECTRUM}, {LOAD, WHIRL}),
+        ("harmonic", {LOAD, DISPLACEMENT, SPECTRUM}, {WHIRL}),
+        ("step", {LOAD, DISPLACEMENT, MINIMUM_FILM}, {SPECTRUM, WHIRL}),
+        ("base_motion", {LOAD, DISPLACEMENT, MINIMUM_FILM}, {SPECTRUM, WHIRL}),
+        ("run_up", {DISPLACEMENT, "Shaft speed [rpm]", WHIRL, "Spectrum cascade"}, {LOAD}),
+        ("coast_down", {DISPLACEMENT, "Shaft speed [rpm]", WHIRL, "Spectrum cascade"}, {LOAD}),
+    ],
+)
+def test_each_kind_opens_with_what_it_is_about(tmp_path, kind, shown, hidden):
+    load = np.full((COUNT, 2), 5.0)
+    orbit = track(1200.0) if kind in ("run_up", "coast_down") else track(load=load)
+    found = overview(write_recording(tmp_path / "a.rrd", contents(kind, orbit)))
+    assert found >= ALWAYS | shown
+    assert not found & hidden
+
+
+def test_every_kind_of_orbit_is_among_them():
+    from rotorsim.recording.layout import FRONTS
+
+    assert set(FRONTS) == {kind.value for kind in OrbitKind}
+
+
+def test_an_actuator_is_shown_where_there_is_one(tmp_path):
+    plain, held = track(), track(actuator_force=np.full((COUNT, 2), 3.0))
+    for orbit, there in ((plain, False), (held, True)):
+        found = overview(write_recording(tmp_path / "a.rrd", contents("free_decay", orbit)))
+        assert (ACTUATOR in found) == there
+
+
+def test_the_film_follows_the_run_in_time(tmp_path):
+    path = write_recording(tmp_path / "a.rrd", contents("free_decay", track()))
+    times: dict[str, list[int]] = {"time": [], "milli-revolutions": [], "speed_rpm": []}
+    entity = "/bearing/isothermal/pressure/wrapped/pressure_MPa"
+    for chunk in RrdReader(path).stream().filter(content=[entity]):
+        batch = chunk.to_record_batch()
+        for name, found in times.items():
+            if name in batch.schema.names:
+                found += batch.column(name).cast("int64").to_pylist()
+    assert times["time"] == [0, 100_000_000]
+    assert times["milli-revolutions"] == [0, round(0.1 * 800.0 / (2.0 * np.pi) * 1000.0)]
+    assert times["speed_rpm"] == [round(800.0 * 30.0 / np.pi)]
+
+
+def test_one_moment_of_contact_leaves_the_others_their_colours():
+    calm = [film(0.01 * k) for k in range(40)]
+    pressure = quantities([*calm, film(0.4, peak=1e9)])[0]
+    assert 0.5 < pressure.high < 1.5
+
+
+def test_a_temperature_that_is_kept_is_written_once():
+    warm = np.full((40, 8), 320.0)
+    frames = [film(None, temperature=warm), *(film(0.1 * k, temperature=warm) for k in range(5))]
+    assert [frame.time for frame in changing(frames)] == [None]
+    moving = frames[1:]
+    assert [frame.time for frame in changing(moving)] == [0.0]
+
+
+def test_whirl_ratio_needs_no_centre_and_knows_rest():
+    moving = track()
+    drift = dataclasses.replace(moving, x=moving.x + 1e-5 * moving.time / 0.2)
+    assert whirl_ratio(drift) == pytest.approx(0.5, abs=0.01)
+    still = dataclasses.replace(moving, x=np.full(COUNT, 3e-5), y=np.full(COUNT, 4e-5))
+    assert np.isnan(whirl_ratio(still)).all()
+
+
+def test_the_line_of_contact_and_the_film_are_the_bearings_own():
+    square = C * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]])
+    own = track(boundary=square, minimum_film=np.full(COUNT, 2e-5))
+    assert own.reach == pytest.approx(2.0**0.5 * C)
+    assert own.thinnest_film[0] == 2e-5
+    assert track().reach == pytest.approx(C)
+    assert track().thinnest_film == pytest.approx(C - np.hypot(track().x, track().y))
