@@ -34,6 +34,8 @@ def orbit_pictures(orbits: Sequence[Orbit]) -> list[OrbitPicture]:
             radial_clearance=orbit.radial_clearance,
             equilibrium=np.asarray(orbit.equilibrium),
             steady_from=steady_from(orbit),
+            boundary=orbit.boundary,
+            once_per_turn=track.once_per_turn,
         )
         for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True)
     ]
@@ -102,6 +104,7 @@ def write_animation(
             force=np.column_stack([orbit.fx, orbit.fy]),
             radial_clearance=orbit.radial_clearance,
             equilibrium=np.asarray(orbit.equilibrium),
+            boundary=orbit.boundary,
         )
         for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True)
     ]

@@ -11,12 +11,13 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle, FancyArrowPatch
+from matplotlib.patches import FancyArrowPatch
 from numpy.typing import NDArray
 
 from rotorsim.atomic import replacing
 from rotorsim.errors import InputError
 
+from .motion import draw_contact
 from .style import MICRO, RPM, SETTINGS, model_style, new_axes
 
 Array = NDArray[np.float64]
@@ -50,6 +51,8 @@ class MovingOrbit:
         [m]
     equilibrium : (2,) array
         [m]
+    boundary : (m, 2) array, optional
+        Closed line on which journal and bush touch [m]. Default: the clearance circle.
     """
 
     name: str
@@ -62,6 +65,7 @@ class MovingOrbit:
     force: Array
     radial_clearance: float
     equilibrium: Array
+    boundary: Array | None = None
 
 
 def animate_orbits(
@@ -180,7 +184,7 @@ class _Scene:
 
     def _above(self, ax: Axes) -> None:
         clearance = self.orbit.radial_clearance * MICRO
-        ax.add_patch(Circle((0.0, 0.0), clearance, fill=False, linewidth=1.4, color="k"))
+        reach = draw_contact(ax, self.orbit.boundary, self.orbit.radial_clearance)
         (self.past,) = ax.plot([], [], color="0.8", linewidth=0.6)
         (self.trail,) = ax.plot([], [], color=self.colour, linewidth=1.3)
         ax.plot(*(self.orbit.equilibrium * MICRO), "+", color="k", ms=8)
@@ -190,8 +194,8 @@ class _Scene:
         ax.add_patch(self.force)
         (self.journal,) = ax.plot([], [], "o", color="k", mfc="w", ms=7)
         ax.set_aspect("equal", adjustable="box")
-        ax.set_xlim(-1.12 * clearance, 1.12 * clearance)
-        ax.set_ylim(-1.12 * clearance, 1.12 * clearance)
+        ax.set_xlim(-1.12 * reach, 1.12 * reach)
+        ax.set_ylim(-1.12 * reach, 1.12 * reach)
         ax.set(xlabel="x (along the load) [µm]", ylabel="y [µm]")
         self.words = ax.set_title("turn")
         ax.text(

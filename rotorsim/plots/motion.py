@@ -41,6 +41,10 @@ class OrbitPicture:
         [m]
     steady_from : int, optional
         First sample of the steady part, drawn strong over the faint transient.
+    boundary : (m, 2) array, optional
+        Closed line on which journal and bush touch [m]. Default: the clearance circle.
+    once_per_turn : (k, 2) array, optional
+        Positions at whole turns of the shaft in the steady part (Poincare points) [m].
     """
 
     name: str
@@ -50,6 +54,8 @@ class OrbitPicture:
     radial_clearance: float
     equilibrium: Array | None = None
     steady_from: int | None = None
+    boundary: Array | None = None
+    once_per_turn: Array | None = None
 
 
 def orbit_plot(
@@ -152,12 +158,22 @@ def bode_plot(
 
 def _whole(ax: Axes, orbit: OrbitPicture, steady_only: bool) -> None:
     clearance = orbit.radial_clearance * MICRO
-    ax.add_patch(Circle((0.0, 0.0), clearance, fill=False, linewidth=1.2, color="k"))
+    reach = 1.1 * draw_contact(ax, orbit.boundary, orbit.radial_clearance)
     _draw(ax, orbit, steady_only)
     ax.set_aspect("equal", adjustable="box")
-    ax.set_xlim(-1.1 * clearance, 1.1 * clearance)
-    ax.set_ylim(-1.1 * clearance, 1.1 * clearance)
-    ax.set_title(f"{orbit.title}\nclearance circle, c = {clearance:.4g} µm")
+    ax.set_xlim(-reach, reach)
+    ax.set_ylim(-reach, reach)
+    ax.set_title(f"{orbit.title}\nclearance c = {clearance:.4g} µm")
+
+
+def draw_contact(ax: Axes, boundary: Array | None, radial_clearance: float) -> float:
+    """Draw the line on which journal and bush touch; give how far it reaches [um]."""
+    if boundary is None:
+        clearance = radial_clearance * MICRO
+        ax.add_patch(Circle((0.0, 0.0), clearance, fill=False, linewidth=1.2, color="k"))
+        return clearance
+    ax.plot(*(boundary.T * MICRO), color="k", linewidth=1.2)
+    return float(np.hypot(*boundary.T).max()) * MICRO
 
 
 def _close_up(ax: Axes, orbit: OrbitPicture, steady_only: bool) -> None:
@@ -174,6 +190,8 @@ def _draw(ax: Axes, orbit: OrbitPicture, steady_only: bool) -> None:
     if start and not steady_only:
         ax.plot(x[: start + 1], y[: start + 1], color="0.7", linewidth=0.6)
     ax.plot(x[start:], y[start:], color=colour, linewidth=0.9)
+    if orbit.once_per_turn is not None:
+        ax.plot(*(orbit.once_per_turn.T * MICRO), ".", color="#D55E00", ms=2)
     first = start if steady_only else 0
     ax.plot(x[first], y[first], "o", color="k", mfc="w", ms=4)
     ax.plot(x[-1], y[-1], "o", color="k", ms=4)

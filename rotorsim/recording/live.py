@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import socket
 import subprocess
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from types import TracebackType
 
@@ -103,21 +105,33 @@ def _joined(before: OrbitTrack, piece: OrbitTrack) -> OrbitTrack:
 
 
 def _viewer_stream() -> rr.RecordingStream:
+    if not _viewer_is_open():
+        _start_viewer()
+    stream = rr.RecordingStream(APPLICATION, send_properties=False)
+    stream.connect_grpc(f"rerun+http://127.0.0.1:{PORT}/proxy")
+    return stream
+
+
+def _viewer_is_open() -> bool:
+    """Whether something listens at the viewer's port: here, or through a tunnel elsewhere."""
+    with suppress(OSError), socket.create_connection(("127.0.0.1", PORT), timeout=1.0):
+        return True
+    return False
+
+
+def _start_viewer() -> None:
     if not has_display():
         raise InputError(
             "there is no display here (neither DISPLAY nor WAYLAND_DISPLAY is set) for a viewer; "
-            "leave --live out and look at the recording on a computer with a screen",
+            "leave --live out and look at the recording on a computer with a screen, or forward "
+            f"port {PORT} from here to a viewer that is open there",
             key="--live",
         )
     program = viewer_program()
     if program is None:
         raise InputError("the rerun-sdk package has no viewer on this platform", key="--live")
     quiet = subprocess.DEVNULL
-    # The viewer hands over to one that is open at this port, and ends.
     subprocess.Popen(
         [str(program), "--bind", "127.0.0.1", "--port", str(PORT)],
         stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True,
     )  # fmt: skip
-    stream = rr.RecordingStream(APPLICATION, send_properties=False)
-    stream.connect_grpc(f"rerun+http://127.0.0.1:{PORT}/proxy")
-    return stream

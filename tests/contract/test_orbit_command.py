@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from functools import partial
 from pathlib import Path
 
@@ -84,6 +86,20 @@ def test_pictures_are_written_where_asked(call, tmp_path):
         later = np.asarray(moving.convert("RGB")).astype(int)
     assert np.abs(first - later).max() > 100  # something moves
     assert not list(folder.glob(".*"))
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg (Debian: ffmpeg)")
+def test_a_film_for_slides_can_be_played(call, tmp_path):
+    done = call("small.toml", "--mp4")
+    assert done.returncode == 0, done.stderr
+    file = tmp_path / "figures" / "small" / "orbit.mp4"
+    size = (384, 512)
+    command = ["ffmpeg", "-v", "error", "-i", file, "-f", "rawvideo", "-pix_fmt", "gray", "-"]
+    raw = subprocess.run(command, capture_output=True, check=True)
+    assert raw.stderr == b""
+    frames = np.frombuffer(raw.stdout, np.uint8).reshape(-1, size[1], size[0]).astype(int)
+    assert len(frames) > 30
+    assert np.abs(frames[0] - frames[len(frames) // 2]).max() > 100  # something moves
 
 
 @pytest.mark.parametrize(

@@ -167,9 +167,12 @@ def sample_contents() -> RecordingContents:
 
 
 class HeadlessViewer:
-    """The wheel's own viewer on one file, drawing on the CPU, reachable from this machine only."""
+    """The wheel's own viewer, drawing on the CPU, reachable from this machine only.
 
-    def __init__(self, recording: Path, folder: Path) -> None:
+    It opens one file; without one it waits for what is sent to its `port`.
+    """
+
+    def __init__(self, recording: Path | None, folder: Path) -> None:
         program = str(viewer_program())
         environment = dict(
             os.environ,
@@ -184,23 +187,26 @@ class HeadlessViewer:
         )
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        command = [program, str(recording), "--headless", "--bind", "127.0.0.1"]
-        command += ["--port", str(port), "--memory-limit", "2GB", "--window-size", "1280x800"]
+            self.port = probe.getsockname()[1]
+        command = [program, "--headless", "--bind", "127.0.0.1", "--port", str(self.port)]
+        command += [] if recording is None else [str(recording)]
+        command += ["--memory-limit", "2GB", "--window-size", "1280x800"]
         self._shown: dict[str, str] = {}
         self.output = (folder / "viewer.log").open("w")
         self.process = subprocess.Popen(
             command, env=environment, stdout=self.output, stderr=self.output
         )
         try:
-            self._wait_until_loaded(f"rerun+http://127.0.0.1:{port}/proxy")
+            self.wait_until_loaded(empty=recording is None)
         except BaseException:
             self.close()
             raise
 
-    def _wait_until_loaded(self, address: str, seconds: float = 60.0) -> None:
+    def wait_until_loaded(self, empty: bool = False, seconds: float = 60.0) -> None:
+        """Wait for a recording with timelines; `empty`: for the viewer alone."""
         from rerun.experimental import ViewerClient
 
+        address = f"rerun+http://127.0.0.1:{self.port}/proxy"
         deadline = time.monotonic() + seconds
         while time.monotonic() < deadline:
             assert self.process.poll() is None, "the viewer ended"
@@ -210,6 +216,8 @@ class HeadlessViewer:
             except Exception:  # not listening yet; the deadline decides
                 time.sleep(0.2)
                 continue
+            if empty:
+                return
             if state.recordings and state.recordings[0].timelines and not state.loading:
                 return
             time.sleep(0.2)
@@ -261,19 +269,28 @@ def contents() -> RecordingContents:
 
 
 @pytest.fixture
-def open_page(contents, tmp_path):
-    """Write the sample with one page in front, and open it."""
+def open_viewer(tmp_path):
+    """Start a viewer on a recording, or an empty one."""
     if software_driver() is None:
         pytest.skip("no Vulkan driver for the CPU (Debian: mesa-vulkan-drivers)")
     if viewer_program() is None:
         pytest.skip("the rerun-sdk wheel has no viewer here")
     opened = []
 
-    def opener(page: str) -> HeadlessViewer:
-        path = write_recording(tmp_path / "sample.rrd", contents, page=page)
+    def opener(path: Path | None = None) -> HeadlessViewer:
         opened.append(HeadlessViewer(path, tmp_path))
         return opened[-1]
 
     yield opener
     for viewer in opened:
         viewer.close()
+
+
+@pytest.fixture
+def open_page(contents, open_viewer, tmp_path):
+    """Write the sample with one page in front, and open it."""
+
+    def opener(page: str) -> HeadlessViewer:
+        return open_viewer(write_recording(tmp_path / "sample.rrd", contents, page=page))
+
+    return opener
