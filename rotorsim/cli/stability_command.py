@@ -289,7 +289,7 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
     table = table if work.model is None else table.select(thermal_model=work.model)
     rotor = wanted_rotor(scenario, *rotor_texts)
     mass = rotor.mass if isinstance(rotor, RigidShaft) else None
-    curves = stability_curves(table, mass)
+    curves = stability_curves(table, rotor)
     found = campbell_curves(table, rotor, modes) if rotor is not None else [None] * len(curves)
     shown = [one for one in found if one is not None]
     document = {

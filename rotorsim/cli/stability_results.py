@@ -38,15 +38,13 @@ def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
         **{
             field.name: getattr(curve, field.name)
             for field in dataclasses.fields(curve)
-            if field.name not in ("choices", "mass")
+            if field.name not in ("choices", "rotor", "mass")
         },
         "decay_rate": curve.decay_rate,
     }
     if modes is not None:
         row["thresholds"] = [dataclasses.asdict(one) for one in modes.thresholds]
         row["modes"] = modes.as_dict()
-        if curve.mass is None:
-            row["threshold_speeds"] = [one.speed for one in modes.thresholds]
     return row
 
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def curve_table(curve: StabilityCurve) -> Table:
     """One curve over speed."""
     head = ["rpm", "M_crit kg", "M c w2/W", "whirl ratio", "verdict"]
-    if curve.mass is not None:
+    if curve.eigenvalues is not None:
         head += ["decay 1/s", "whirl rpm"]
     table = grid(curve_title(curve), *head)
     for index, speed in enumerate(curve.speed):
@@ -43,8 +43,8 @@ def curve_table(curve: StabilityCurve) -> Table:
 
 def summary_table(curves: Sequence[StabilityCurve]) -> Table:
     """Threshold speeds of all curves."""
-    mass = curves[0].mass if curves else None
-    title = "Critical mass" if mass is None else f"Rotor of {number(mass)} kg per bearing"
+    rotor = curves[0].rotor if curves else ""
+    title = rotor[:1].upper() + rotor[1:] or "Critical mass"
     table = grid(title, "bearing", "least M_crit kg", "threshold speeds rpm")
     for curve in curves:
         known = curve.critical_mass[~_nan(curve.critical_mass)]

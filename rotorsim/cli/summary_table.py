@@ -92,12 +92,12 @@ def _percent(cold: float | None, hot: float | None) -> str:
 
 def threshold_table(curves: Sequence[StabilityCurve]) -> Table:
     """Whether the rotor is stable at the highest speed, and where that changes."""
-    mass = curves[0].mass
-    title = "Stability" + ("" if mass is None else f", {number(mass)} kg per bearing")
+    rotor = curves[0].rotor
+    title = "Stability" + (f", {rotor}" if rotor else "")
     top = f"at {curves[0].speed[-1] * RPM:.0f} rpm"
-    table = grid(title, "bearing", *([] if mass is None else [top]), "threshold rpm")
+    table = grid(title, "bearing", *([top] if rotor else []), "threshold rpm")
     for curve in curves:
-        verdict = [] if mass is None else [verdict_at_top(curve)]
+        verdict = [verdict_at_top(curve)] if rotor else []
         table.add_row(curve_title(curve), *verdict, thresholds_text(curve))
     return table
 

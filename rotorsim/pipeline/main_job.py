@@ -112,8 +112,8 @@ def compute(
     With `orbits` those are taken for the scenario's, and none is simulated.
     """
     attempt = Attempts(announce)
-    mass = rigid_mass(scenario.rotor)
-    curves = attempt("critical mass", lambda: stability_curves(table, mass), [])
+    rotor = rotor_on_film(scenario.rotor)
+    curves = attempt("critical mass", lambda: stability_curves(table, rotor), [])
     paths = attempt("eigenvalues", lambda: eigenvalue_paths(scenario, table), [])
     chart = attempt("stability map", lambda: map_of(scenario, table), None)
     films: list[FilmSurface] = []

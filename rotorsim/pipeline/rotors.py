@@ -15,3 +15,12 @@ def rotor_on_film(rotor: Rotor | None) -> RotorOnFilm | None:
             rotor.disc_mass, rotor.shaft_stiffness, rotor.journal_mass, rotor.disc_damping
         )
     return RigidShaft(rotor.mass)
+
+
+def rotor_words(rotor: RotorOnFilm | None) -> str:
+    """``rotor of 1200 kg per bearing``, ``Jeffcott rotor``; empty without one."""
+    if rotor is None:
+        return ""
+    if isinstance(rotor, RigidShaft):
+        return f"rotor of {rotor.mass:.4g} kg per bearing"
+    return "Jeffcott rotor" if isinstance(rotor, JeffcottShaft) else "rotor of your matrices"

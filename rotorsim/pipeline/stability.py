@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
+from ..table import Coefficients
+from .rotors import rotor_words
 
+if TYPE_CHECKING:
     from ..stability.map import StabilityMap
+    from ..stability.over_speed import RotorOnFilm
     from ..table import CoefficientTable
 
 Array = NDArray[np.float64]
-_SEARCH_POINTS = 2001
-"""Between the lowest and the highest speed, among which crossings are looked for."""
 
 
 @dataclass(frozen=True)
 class StabilityCurve:
-    """Rigid rotor on one bearing with one thermal model, over the tabulated speeds (SI).
+    """A rotor on one bearing with one thermal model, over the tabulated speeds (SI).
 
     Attributes
     ----------
@@ -33,11 +33,13 @@ class StabilityCurve:
     stability : (n,) array of str
         Verdict on the critical mass; empty where the point did not converge.
     critical_mass, critical_mass_dimensionless, whirl_frequency_ratio : (n,) arrays
-        NaN without a threshold.
+        Of a rigid rotor; NaN without a threshold.
+    rotor : str
+        In words; empty without a rotor.
     mass : float or None
-        Rotor mass per bearing [kg].
-    eigenvalues : (n, 4) complex array or None
-        Of that rotor [1/s], falling real part.
+        Per bearing, of a rigid rotor [kg].
+    eigenvalues : (n, k) complex array or None
+        Of the rotor [1/s], falling real part.
     threshold_speeds : tuple of float
         Speeds at which that rotor turns from stable to unstable or back [rad/s].
     """
@@ -48,6 +50,7 @@ class StabilityCurve:
     critical_mass: Array
     critical_mass_dimensionless: Array
     whirl_frequency_ratio: Array
+    rotor: str = ""
     mass: float | None = None
     eigenvalues: NDArray[np.complex128] | None = None
     threshold_speeds: tuple[float, ...] = ()
@@ -105,8 +108,21 @@ def map_planes(chart: StabilityMap) -> list[MapPlane]:
     return planes
 
 
-def stability_curves(table: CoefficientTable, mass: float | None = None) -> list[StabilityCurve]:
-    """Curves of every thermal model and clearance in `table`, for a rotor of `mass` per bearing."""
+def stability_curves(
+    table: CoefficientTable, rotor: RotorOnFilm | float | None = None
+) -> list[StabilityCurve]:
+    """Curves of every thermal model and clearance in `table`.
+
+    Parameters
+    ----------
+    table : CoefficientTable
+    rotor : RotorOnFilm or float, optional
+        A number is the mass of a rigid rotor per bearing [kg].
+    """
+    from ..stability import RigidShaft
+
+    if isinstance(rotor, (int, float)):
+        rotor = RigidShaft(float(rotor))
     values = {name: table.dataset[name].values for name in table.choices}
     combinations = itertools.product(*(enumerate(column) for column in values.values()))
     curves = []
@@ -116,14 +132,17 @@ def stability_curves(table: CoefficientTable, mass: float | None = None) -> list
             name: value if isinstance(value, str) else float(value)
             for name, (_, value) in zip(values, combination, strict=True)
         }
-        curves.append(_curve(table, index, choices, mass))
+        curves.append(_curve(table, index, choices, rotor))
     return curves
 
 
 def _curve(
-    table: CoefficientTable, index: tuple[int, ...], choices: dict[str, Any], mass: float | None
+    table: CoefficientTable,
+    index: tuple[int, ...],
+    choices: dict[str, Any],
+    rotor: RotorOnFilm | None,
 ) -> StabilityCurve:
-    from ..stability import rigid_thresholds
+    from ..stability import RigidShaft, rigid_thresholds
 
     usable = table.converged[index]
     blank = np.where(usable, 1.0, np.nan)[:, None, None]
@@ -143,48 +162,44 @@ def _curve(
         critical_mass=found.critical_mass,
         critical_mass_dimensionless=found.critical_mass_dimensionless,
         whirl_frequency_ratio=found.whirl_frequency_ratio,
-        mass=mass,
-        eigenvalues=None if mass is None else _eigenvalues(stiffness, damping, mass),
-        threshold_speeds=() if mass is None else _thresholds(table, choices, mass),
+        rotor=rotor_words(rotor),
+        mass=rotor.mass if isinstance(rotor, RigidShaft) else None,
+        eigenvalues=(
+            None if rotor is None else _eigenvalues(rotor, stiffness, damping, table.speeds)
+        ),
+        threshold_speeds=() if rotor is None else _thresholds(table, choices, rotor),
     )
 
 
-def _eigenvalues(stiffness: Array, damping: Array, mass: float) -> NDArray[np.complex128]:
-    """(n, 4), each row by falling real part; NaN where K or C is."""
+def _eigenvalues(
+    rotor: RotorOnFilm, stiffness: Array, damping: Array, speeds: Array
+) -> NDArray[np.complex128]:
+    """(n, k), each row by falling real part; NaN where K or C is."""
+    from ..stability import RigidShaft
     from ..stability.rates import eigenvalues
 
-    values = eigenvalues(stiffness, damping, mass)
+    values: NDArray[np.complex128]
+    if isinstance(rotor, RigidShaft):
+        values = eigenvalues(stiffness, damping, rotor.mass)
+    else:
+        rows = [
+            np.linalg.eigvals(rotor.state_matrix(Coefficients(k, c, float(speed))))
+            if np.all(np.isfinite(k)) and np.all(np.isfinite(c))
+            else None
+            for k, c, speed in zip(stiffness, damping, speeds, strict=True)
+        ]
+        size = max((row.size for row in rows if row is not None), default=0)
+        gap = np.full(size, complex(np.nan, np.nan))
+        values = np.array([gap if row is None else row for row in rows], dtype=complex)
     order = np.argsort(-values.real, axis=1, kind="stable")
     return np.take_along_axis(values, order, axis=1)
 
 
-def _thresholds(table: CoefficientTable, choices: dict[str, Any], mass: float) -> tuple[float, ...]:
-    coefficients = table.interpolator(**choices)
+def _thresholds(
+    table: CoefficientTable, choices: dict[str, Any], rotor: RotorOnFilm
+) -> tuple[float, ...]:
+    from ..stability.over_speed import converged_speeds, rotor_thresholds
 
-    def growth(speed: Array) -> Array:
-        stiffness, damping = coefficients(speed, gaps="nan")
-        return _eigenvalues(stiffness, damping, mass)[:, 0].real
-
-    return crossings(growth, *coefficients.bounds)
-
-
-def crossings(function: Callable[[Array], Array], low: float, high: float) -> tuple[float, ...]:
-    """Arguments between `low` and `high` at which a function of an array changes its sign.
-
-    Crossings closer together than a two-thousandth of the range may be missed; where the function
-    is NaN none are found.
-    """
-    if not high > low:
+    if converged_speeds(table, **choices).size < 2:
         return ()
-    grid = np.linspace(low, high, _SEARCH_POINTS)
-    values = function(grid)
-    found = []
-    for place in np.flatnonzero(values[:-1] * values[1:] < 0.0):
-        left, right = grid[place], grid[place + 1]
-        sign = np.sign(values[place])
-        for _ in range(60):
-            middle = 0.5 * (left + right)
-            value = function(np.array([middle]))[0]
-            left, right = (middle, right) if np.sign(value) == sign else (left, middle)
-        found.append(float(0.5 * (left + right)))
-    return tuple(found)
+    return tuple(one.speed for one in rotor_thresholds(table, rotor, **choices))

@@ -103,15 +103,17 @@ def margins(curves: Sequence[StabilityCurve]) -> str:
     """Stability at the highest speed and how far from the border, bearing by bearing."""
     if not curves:
         return ""
-    mass = curves[0].mass
+    rotor, mass = curves[0].rotor, curves[0].mass
     top = curves[0].speed[-1] * RPM
     head = ["bearing", "M crit kg", "M c ω²/W", "whirl ratio"]
+    if rotor:
+        head += ["verdict", "threshold rpm", "decay 1/s", "log. decrement"]
     if mass is not None:
-        head += ["verdict", "mass margin", "threshold rpm", "decay 1/s", "log. decrement"]
+        head.append("mass margin")
     rows = [_margin_row(curve) for curve in curves]
     caption = f"At {top:.0f} rpm"
-    if mass is not None:
-        caption += f", {number(mass)} kg per bearing"
+    if rotor:
+        caption += f", {rotor}"
     return _wide(html.table(head, rows, caption, texts=1))
 
 
@@ -123,18 +125,18 @@ def _margin_row(curve: StabilityCurve) -> list[str]:
         number(float(curve.critical_mass_dimensionless[-1])),
         number(float(curve.whirl_frequency_ratio[-1]), 3),
     ]
-    if curve.mass is None:
+    if curve.decay_rate is None:
         return row
-    margin = f"{100.0 * (1.0 - curve.mass / critical):.1f} %" if math.isfinite(critical) else "-"
-    decay = None if curve.decay_rate is None else float(curve.decay_rate[-1])
-    return [
-        *row,
+    row += [
         verdict_at_top(curve),
-        margin,
         thresholds_text(curve),
-        number(decay),
+        number(float(curve.decay_rate[-1])),
         number(log_decrement(curve)),
     ]
+    if curve.mass is not None:
+        part = 100.0 * (1.0 - curve.mass / critical)
+        row.append(f"{part:.1f} %" if math.isfinite(part) else "-")
+    return row
 
 
 def _verdict_words(curve: StabilityCurve) -> str:

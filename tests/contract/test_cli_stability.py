@@ -114,7 +114,8 @@ def test_a_general_rotor_from_npz_and_mat(here, tmp_path):
         assert done.returncode == 0, done.stderr
         found.append(strict(done.stdout)["curves"][0])
     assert found[0]["modes"] == found[1]["modes"]
-    assert found[0]["eigenvalues"] is None
+    growth = [row[0][0] for row in found[0]["eigenvalues"]]
+    assert growth == pytest.approx(found[0]["modes"]["growth_rate"], rel=1e-6)
     largest = [max(pair[0] for pair in row) for row in reference["eigenvalues"]]
     assert found[0]["modes"]["growth_rate"] == pytest.approx(largest, abs=0.05)
     (threshold,) = found[0]["thresholds"]

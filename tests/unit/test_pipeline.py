@@ -9,7 +9,7 @@ from rotorsim.errors import InputError
 from rotorsim.pipeline import orbits as orbit_steps
 from rotorsim.pipeline.main_job import Attempts, compute
 from rotorsim.pipeline.orbits import static_position
-from rotorsim.pipeline.stability import crossings, stability_curves
+from rotorsim.pipeline.stability import stability_curves
 from rotorsim.pipeline.writing import write_results
 from rotorsim.records import failed_point
 from rotorsim.scenario import Scenario
@@ -44,14 +44,6 @@ def scenario():
 @pytest.fixture(scope="module")
 def points(scenario):
     return sweep_points(list(scenario.cases()), [float(s) for s in scenario.speeds], workers=1)
-
-
-def test_crossings_of_a_known_function():
-    found = crossings(lambda x: np.cos(x), 0.0, 10.0)
-    assert found == pytest.approx([0.5 * np.pi, 1.5 * np.pi, 2.5 * np.pi], abs=1e-12)
-    assert crossings(lambda x: x + 1.0, 0.0, 10.0) == ()
-    assert crossings(lambda x: np.where(x < 5.0, np.nan, 1.0), 0.0, 10.0) == ()
-    assert crossings(np.cos, 3.0, 3.0) == ()
 
 
 def test_threshold_speed_is_where_the_critical_mass_is_the_rotors(scenario, points):
