@@ -93,7 +93,10 @@ def _seen(row: dict[str, Any]) -> list[str]:
 
 
 def spectrum_pictures(orbits: Sequence[Orbit]) -> list[SpectrumPicture]:
-    """Spectrum of the steady part of each run at constant speed that does not come to rest."""
+    """Spectrum of each run at constant speed that does not come to rest: of its steady part.
+
+    Of the whole run where it has none: it grows or decays.
+    """
     from ..errors import InputError
     from ..orbit import OrbitStatus, spectrum, steady_part
     from ..recording import SpectrumPicture

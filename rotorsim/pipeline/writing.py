@@ -59,11 +59,13 @@ def recording_contents(results: Results) -> RecordingContents:
     """Everything that the recording shows."""
     from ..recording import RecordingContents
 
-    settings = results.scenario.orbit
+    kinds = {orbit.kind for orbit in results.orbits}
+    both = len({orbit.constant_speed for orbit in results.orbits}) > 1
     return RecordingContents(
         title=results.scenario.title,
         summary=markdown_summary(results),
-        kind="" if settings is None else settings.kind.value,
+        # Runs at one speed and through the speeds beside each other are the whole job.
+        kind=kinds.pop() if len(kinds) == 1 and not both else "",
         orbits=tuple(orbit_tracks(results.orbits)),
         films=results.films,
         eigenvalues=results.eigenvalues,

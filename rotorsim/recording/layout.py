@@ -149,11 +149,10 @@ def _cascade_views(contents: RecordingContents) -> list[Part]:
 
 def _overview(contents: RecordingContents) -> Part:
     front = FRONTS.get(contents.kind, WHOLE_JOB)
-    middle: list[Part] = []
+    frequencies: list[Part] = _cascade_views(contents) if front.frequencies else []
     if front.frequencies and contents.spectra:
-        middle.append(spectrum_view(len(contents.spectra)))
-    if front.frequencies and contents.cascades:
-        middle.append(_tabs(_cascade_views(contents)))
+        frequencies.append(spectrum_view(len(contents.spectra)))
+    middle: list[Part] = [_tabs(frequencies)] if frequencies else []
     films = _film_views(contents, flat=False)
     if middle and films:
         middle.append(_tabs(films))

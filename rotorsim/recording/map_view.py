@@ -10,7 +10,7 @@ import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from .chart import HEIGHT, WIDTH, Chart, chart_bounds, log_labels, tick_text
-from .colormaps import colours
+from .colormaps import TEXT, colours
 from .contents import CascadePicture, MapPicture, OrbitTrack, Verdict, nearest
 from .timeline import RPM, distinct_speeds, speed_index, track_index
 
@@ -154,16 +154,26 @@ def _send_operating_point(
 ) -> None:
     if picture.rotor_mass is None:
         return
-    style = rr.Points2D.from_fields(
-        radii=rr.Radius.ui_points(6.0), colors=(255, 255, 255), draw_order=60.0, show_labels=True
+    dot = rr.Points2D.from_fields(
+        radii=rr.Radius.ui_points(6.0), colors=(255, 255, 255), draw_order=60.0
     )
+    words = rr.Points2D.from_fields(radii=0.0, colors=TEXT, draw_order=61.0, show_labels=True)
     mass = tick_text(float(f"{picture.rotor_mass:.4g}"))
     shown = distinct_speeds(tracks)
     places = [(f"{entity}/{t.name}", track_index(t, r), t.speed[r]) for t, r in shown]
     by_speed = f"{entity}/{shown[0][0].name}" if shown else entity
     places.append((by_speed, [speed_index(picture.speed)], picture.speed))
     for name, index, speed in places:
-        stream.log(name, style, static=True)
+        stream.log(name, dot, static=True)
+        stream.log(f"{name}/words", words, static=True)
         points = chart.place(speed * RPM, picture.rotor_mass)
         labels = [f"{tick_text(round(rpm))} rpm, {mass} kg" for rpm in speed * RPM]
-        stream.send_columns(name, index, rr.Points2D.columns(positions=points, labels=labels))
+        # Words below the first point and above a second one: they may pass each other. Near the
+        # right border they stand to the left.
+        above = len(shown) > 1 and name.endswith(f"/{shown[1][0].name}")
+        beside = np.where(points[:, 0] > 0.8 * WIDTH, -0.2, 0.0)
+        at = points + np.column_stack([beside, np.full(len(points), -0.14 if above else 0.0)])
+        stream.send_columns(name, index, rr.Points2D.columns(positions=points))
+        stream.send_columns(
+            f"{name}/words", index, rr.Points2D.columns(positions=at, labels=labels)
+        )

@@ -1,4 +1,4 @@
-"""Spectrum of each steady motion, the shaft's frequency and half of it marked."""
+"""Spectrum of each motion at constant speed, the shaft's frequency and half of it marked."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def spectrum_view(count: int) -> rrb.Spatial2DView:
     """View of that many spectra."""
     return rrb.Spatial2DView(
         origin=f"/{ENTITY}",
-        name="Spectrum of the steady motion",
+        name="Spectrum of the motion",
         visual_bounds=chart_bounds(0.1 * count),
     )
 

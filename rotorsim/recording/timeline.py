@@ -144,15 +144,24 @@ def tracks_of(tracks: Sequence[OrbitTrack], name: str) -> list[OrbitTrack]:
 def distinct_speeds(tracks: Sequence[OrbitTrack]) -> list[tuple[OrbitTrack, Indices]]:
     """Tracks that differ in speed over time, each with the samples at which a point is moved.
 
-    Runs of the two thermal models are commonly at the same speed: one point stands for both.
+    Runs of the two thermal models are commonly at the same speed: one point stands for both, that
+    of the longer run.
     """
-    found: list[tuple[OrbitTrack, Indices]] = []
-    seen: set[tuple[float, ...]] = set()
-    for track in tracks:
-        key = tuple(round(float(v), 6) for v in (track.speed[0], track.speed[-1], track.time[-1]))
-        if key[:2] in seen or key in seen:
-            continue
-        seen.add(key[:2] if track.constant_speed else key)
-        rows = np.array([0]) if track.constant_speed else thin(track.time.size, MOVING_LIMIT)
-        found.append((track, rows))
-    return found
+    found: list[OrbitTrack] = []
+    for track in sorted(tracks, key=lambda one: one.time[-1], reverse=True):
+        if not any(_same_speed(track, other) for other in found):
+            found.append(track)
+    found.sort(key=lambda track: not track.constant_speed)
+    return [
+        (track, np.array([0]) if track.constant_speed else thin(track.time.size, MOVING_LIMIT))
+        for track in found
+    ]
+
+
+def _same_speed(one: OrbitTrack, other: OrbitTrack) -> bool:
+    """Whether two runs turn alike as long as both go on."""
+    if one.constant_speed != other.constant_speed:
+        return False
+    common = np.linspace(0.0, min(one.time[-1], other.time[-1]), 50)
+    speeds = [np.interp(common, track.time, track.speed) for track in (one, other)]
+    return bool(np.allclose(*speeds, rtol=1e-3, atol=0.0))

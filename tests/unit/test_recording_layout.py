@@ -19,6 +19,7 @@ from rotorsim.recording import (
 from rotorsim.recording.film_view import changing
 from rotorsim.recording.quantities import quantities
 from rotorsim.recording.series_view import whirl_ratio
+from rotorsim.recording.timeline import distinct_speeds
 from rotorsim.scenario.settings import OrbitKind
 
 C = 1e-4
@@ -81,7 +82,7 @@ def overview(path) -> set[str]:
 ALWAYS = {"Orbit", "What is seen", "Film pressure [MPa]"}
 DISPLACEMENT, MINIMUM_FILM = "Displacement x, y [µm]", "Minimum film thickness [µm]"
 LOAD, ACTUATOR = "Load on the rotor x, y [N]", "Actuator force x, y [N]"
-WHIRL, SPECTRUM = "Whirl frequency / shaft frequency [-]", "Spectrum of the steady motion"
+WHIRL, SPECTRUM = "Whirl frequency / shaft frequency [-]", "Spectrum of the motion"
 
 
 @pytest.mark.parametrize(
@@ -161,3 +162,14 @@ def test_the_line_of_contact_and_the_film_are_the_bearings_own():
     assert own.thinnest_film[0] == 2e-5
     assert track().reach == pytest.approx(C)
     assert track().thinnest_film == pytest.approx(C - np.hypot(track().x, track().y))
+
+
+def test_one_point_stands_for_runs_that_turn_alike():
+    up = track(1200.0)
+    touched = OrbitTrack(
+        "thd_run_up", up.time[:300], up.x[:300], up.y[:300], up.angle[:300], up.speed[:300], C
+    )
+    faster = track(1600.0)
+    shown = [found for found, _ in distinct_speeds([touched, up, faster, track(), track()])]
+    assert [one.speed[-1] for one in shown] == [800.0, 1200.0, 1600.0]
+    assert shown[1].time.size == COUNT
