@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -109,9 +110,7 @@ def solve_case(
     if not (math.isfinite(speed) and speed > 0.0):
         raise InputError("must be above 0 (rad/s)", key="speed", value=speed)
     try:
-        solution = solve_film(case, speed, initial=initial)
-        if solution.status is not SolveStatus.CONVERGED and initial is not None:
-            solution = solve_film(case, speed)  # the first guess may have been a bad one
+        solution = _solution(case, speed, initial)
     except NoFilmError as error:
         return failed_point(case, speed, str(error), SolveStatus.NO_EQUILIBRIUM), None
     except SingularFilmError as error:
@@ -119,6 +118,16 @@ def solve_case(
     point = operating_point(case, speed, solution, keep_fields=keep_fields)
     usable = solution.status is SolveStatus.CONVERGED
     return point, solution.warm_start if usable else None
+
+
+def _solution(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
+    """Solve from the first guess, and without it where that leads nowhere."""
+    if initial is not None:
+        with suppress(NoFilmError, SingularFilmError):
+            solution = solve_film(case, speed, initial=initial)
+            if solution.status is SolveStatus.CONVERGED:
+                return solution
+    return solve_film(case, speed)
 
 
 def operating_point(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..model import EccentricityTarget
-from ..pipeline.wording import KELVIN, RPM, number
+from ..pipeline.wording import RPM, ZERO_CELSIUS, number
 from .tables import grid
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def _inputs(scenario: Scenario) -> RenderableType:
     table.add_row("radial clearance", f"{clearances} um")
     table.add_row("grooves, arcs", f"{len(bearing.grooves)}, {len(bearing.arcs)}")
     viscosity = float(oil.viscosity(supply))
-    table.add_row("viscosity", f"{number(viscosity)} Pa s at {number(supply - KELVIN)} degC")
+    table.add_row("viscosity", f"{number(viscosity)} Pa s at {number(supply - ZERO_CELSIUS)} degC")
     low, high = scenario.speeds[0] * RPM, scenario.speeds[-1] * RPM
     table.add_row("speed", f"{low:.0f} to {high:.0f} rpm, {len(scenario.speeds)} of them")
     if isinstance(target, EccentricityTarget):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .stability_tables import curve_title
-from .tables import KELVIN, RPM, grid, number
+from .tables import RPM, ZERO_CELSIUS, grid, number
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -27,7 +27,7 @@ _SHOWN = {
     "mass": ("kg", 1.0, 0.0),
     "radial_clearance": ("um", 1e6, 0.0),
     "applied_load": ("kN", 1e-3, 0.0),
-    "supply_temperature": ("degC", 1.0, -KELVIN),
+    "supply_temperature": ("degC", 1.0, -ZERO_CELSIUS),
 }
 
 

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..pipeline.wording import (
-    KELVIN,
     RPM,
+    ZERO_CELSIUS,
     curve_title,
     number,
     thresholds_text,
@@ -63,7 +63,7 @@ def heating_table(rows: Sequence[Mapping[str, Any]]) -> Table:
                 number(one["load"]),
                 number(one["friction_force"]),
                 number(one["max_pressure"] / 1e6),
-                number(one["max_temperature"] - KELVIN),
+                number(one["max_temperature"] - ZERO_CELSIUS),
                 _mass(one),
             )
         if {"isothermal", "thd"} <= set(models):

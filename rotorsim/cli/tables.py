@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from ..pipeline.wording import KELVIN, RPM, critical_mass_text, number
+from ..pipeline.wording import RPM, ZERO_CELSIUS, critical_mass_text, number
 
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
@@ -63,7 +63,7 @@ def _points_table(points: Sequence[OperatingPoint], title: str) -> Table:
             number(point.load / 1e3),
             number(point.min_film_thickness * 1e6, 3),
             number(point.max_pressure / 1e6, 3),
-            number(point.max_temperature - KELVIN, 3),
+            number(point.max_temperature - ZERO_CELSIUS, 3),
             number(point.power_loss / 1e3),
             critical_mass_text(point),
             status_text(point),
@@ -102,8 +102,8 @@ def _rows(point: OperatingPoint) -> list[tuple[str, str, str]]:
         ("Sommerfeld number", number(point.sommerfeld_number), ""),
         ("minimum film thickness", number(point.min_film_thickness * 1e6), "um"),
         ("maximum pressure", number(point.max_pressure / 1e6), "MPa"),
-        ("maximum temperature", number(point.max_temperature - KELVIN), "degC"),
-        ("mean temperature", number(point.mean_temperature - KELVIN), "degC"),
+        ("maximum temperature", number(point.max_temperature - ZERO_CELSIUS), "degC"),
+        ("mean temperature", number(point.mean_temperature - ZERO_CELSIUS), "degC"),
         ("friction force", number(point.friction_force), "N"),
         ("power loss", number(point.power_loss / 1e3), "kW"),
         ("side flow", number(point.side_flow * 6e4), "L/min"),

@@ -37,7 +37,7 @@ def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
     --------
     >>> from rotorsim.model import Bearing
     >>> plain = Bearing(journal_radius=0.05, length=0.08, radial_clearance=1e-4)
-    >>> float(np.hypot(*contact_boundary(plain).T).max())
+    >>> round(float(np.hypot(*contact_boundary(plain).T).max()), 9)
     0.0001
     """
     phi = np.linspace(0.0, 2.0 * math.pi, count)

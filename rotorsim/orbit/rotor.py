@@ -84,7 +84,7 @@ def jeffcott_rotor(
     damping: float = 0.0,
     unbalance: float = 0.0,
 ) -> RotorModel:
-    """Jeffcott rotor on two like bearings, one half of it: journal, flexible shaft, disk.
+    """Jeffcott rotor on two like bearings, one half of it: journal, flexible shaft, disc.
 
     Parameters
     ----------
@@ -94,9 +94,9 @@ def jeffcott_rotor(
         Of the shaft, per bearing [N/m]: the rigidly supported natural frequency is
         sqrt(stiffness/disk_mass).
     damping : float
-        External, on the disk, per bearing [N s/m].
+        External, on the disc, per bearing [N s/m].
     unbalance : float
-        Of the disk, per bearing [kg m].
+        Of the disc, per bearing [kg m].
     """
     for name, value in (
         ("disk_mass", disk_mass),

@@ -167,6 +167,7 @@ def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
                 force=np.column_stack([orbit.fx, orbit.fy]),
                 load=orbit.load if np.any(orbit.load) else None,
                 actuator_force=orbit.actuator_force if orbit.actuated else None,
+                disc=orbit.displacements[:, 2:4] if orbit.displacements.shape[1] > 2 else None,
                 minimum_film=orbit.min_film,
                 boundary=orbit.boundary,
                 once_per_turn=once_per_turn(orbit),

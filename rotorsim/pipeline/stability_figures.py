@@ -10,7 +10,7 @@ import numpy as np
 
 from ..stability.over_speed import RigidShaft
 from .planes import Plane
-from .wording import KELVIN, RPM
+from .wording import RPM, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,7 +24,7 @@ _AXES = {
     "mass": ("rotor mass per bearing [kg]", 1.0, 0.0),
     "radial_clearance": ("radial clearance [µm]", 1e6, 0.0),
     "applied_load": ("load per bearing [kN]", 1e-3, 0.0),
-    "supply_temperature": ("supply temperature [°C]", 1.0, -KELVIN),
+    "supply_temperature": ("supply temperature [°C]", 1.0, -ZERO_CELSIUS),
 }
 """Label, factor and offset from SI to what a figure shows."""
 _WORDS = {
@@ -32,7 +32,7 @@ _WORDS = {
     "mass": ("{:.4g} kg per bearing", 1.0, 0.0),
     "radial_clearance": ("c = {:.4g} µm", 1e6, 0.0),
     "applied_load": ("{:.4g} kN", 1e-3, 0.0),
-    "supply_temperature": ("oil at {:.4g} °C", 1.0, -KELVIN),
+    "supply_temperature": ("oil at {:.4g} °C", 1.0, -ZERO_CELSIUS),
 }
 
 

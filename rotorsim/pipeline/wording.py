@@ -6,6 +6,8 @@ import math
 import re
 from typing import TYPE_CHECKING
 
+from ..model.lubricant import ZERO_CELSIUS as ZERO_CELSIUS
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -13,7 +15,6 @@ if TYPE_CHECKING:
     from .stability import StabilityCurve
 
 RPM = 30.0 / math.pi
-KELVIN = 273.15
 VERDICTS = {
     "always_stable": "stable at any mass",
     "always_unstable": "unstable at any mass",

@@ -14,7 +14,7 @@ from .main_job import Announce, Attempts, Results, compute, summary
 from .orbits import orbit_settings
 from .recordings import cascade_pictures, orbit_notes, orbit_tracks, record, spectrum_pictures
 from .stability import map_planes
-from .wording import KELVIN, RPM
+from .wording import RPM, ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from ..orbit import Orbit
@@ -177,9 +177,10 @@ def markdown_summary(results: Results) -> str:
             if one is not None:
                 mass = one["critical_mass"]
                 critical = one["stability"] or "-" if mass is None else f"{mass:.4g}"
+                hottest = one["max_temperature"] - ZERO_CELSIUS
                 lines.append(
                     f"| {model.value} | {one['load']:.4g} | {one['friction_force']:.4g} | "
-                    f"{one['max_pressure'] / 1e6:.4g} | {one['max_temperature'] - KELVIN:.4g} | "
+                    f"{one['max_pressure'] / 1e6:.4g} | {hottest:.4g} | "
                     f"{critical} |"
                 )
         lines.append("")

@@ -11,7 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
-from .style import CELSIUS, MEGA, model_label, model_style, new_axes
+from rotorsim.model.lubricant import ZERO_CELSIUS
+
+from .style import MEGA, model_label, model_style, new_axes
 
 Array = NDArray[np.float64]
 
@@ -50,7 +52,7 @@ def film_maps(films: Sequence[FilmPicture], title: str = "") -> Figure:
     size = (9.0 if warm else 5.0, 0.7 + 2.3 * len(films))
     figure, axes = new_axes(len(films), 2 if warm else 1, size, title, sharex=True, sharey=True)
     top = max(float(film.pressure.max()) for film in films) * MEGA
-    heat = [f.temperature - CELSIUS for f in films if f.temperature is not None]
+    heat = [f.temperature - ZERO_CELSIUS for f in films if f.temperature is not None]
     for row, film in zip(axes, films, strict=True):
         label = f"{model_label(film.name)}: pressure [MPa]"
         _contours(figure, row[0], film, film.pressure * MEGA, (0.0, top), "viridis", label)
@@ -62,7 +64,7 @@ def film_maps(films: Sequence[FilmPicture], title: str = "") -> Figure:
             continue
         span = (min(float(t.min()) for t in heat), max(float(t.max()) for t in heat))
         label = f"{model_label(film.name)}: mean temperature [°C]"
-        _contours(figure, row[1], film, film.temperature - CELSIUS, span, "inferno", label)
+        _contours(figure, row[1], film, film.temperature - ZERO_CELSIUS, span, "inferno", label)
     for ax in axes[-1]:
         ax.set_xlabel("angle from the load line [deg]")
     for ax in axes[:, 0]:
@@ -80,7 +82,7 @@ def film_profiles(films: Sequence[FilmPicture], title: str = "") -> Figure:
         look = {**model_style(film.name), "label": model_label(film.name)}
         axes[0, 0].plot(angle, film.pressure[order, middle] * MEGA, **look)
         if film.temperature is not None:
-            axes[0, 1].plot(angle, film.temperature[order, middle] - CELSIUS, **look)
+            axes[0, 1].plot(angle, film.temperature[order, middle] - ZERO_CELSIUS, **look)
     axes[0, 0].set_ylabel("mid-plane pressure [MPa]")
     if warm:
         axes[0, 1].set_ylabel("mid-plane mean temperature [°C]")

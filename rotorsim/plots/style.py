@@ -18,7 +18,6 @@ from rotorsim.atomic import replacing
 RPM = 30.0 / np.pi
 MICRO = 1e6
 MEGA = 1e-6
-CELSIUS = 273.15
 
 # Okabe & Ito colours of unlike lightness: blue is dark and orange is light in grey, too.
 MODEL_STYLES: dict[str, dict[str, Any]] = {

@@ -18,6 +18,10 @@ from rotorsim.operating_point import OperatingPoint
 Array = NDArray[np.float64]
 
 
+TRACK_OPTIONS = ("force", "load", "actuator_force", "disc", "minimum_film")
+"""Series that a track may have or not."""
+
+
 @dataclass(frozen=True)
 class OrbitTrack:
     """One simulated motion of the journal's centre.
@@ -44,6 +48,8 @@ class OrbitTrack:
         What varies in time on the rotor: steps, harmonics, the moving base [N].
     actuator_force : (n, 2) array, optional
         On the journal [N].
+    disc : (n, 2) array, optional
+        Motion of a flexible rotor's disc, from the bearing's centre [m].
     minimum_film : (n,) array, optional
         Film thickness where it is least [m]. Default: of the plain, aligned bearing.
     boundary : (m, 2) array, optional
@@ -65,6 +71,7 @@ class OrbitTrack:
     force: Array | None = None
     load: Array | None = None
     actuator_force: Array | None = None
+    disc: Array | None = None
     minimum_film: Array | None = None
     boundary: Array | None = None
     once_per_turn: Array | None = None
@@ -73,7 +80,7 @@ class OrbitTrack:
     def __post_init__(self) -> None:
         for key in ("x", "y", "angle", "speed"):
             _same_length(self.name, key, getattr(self, key), self.time)
-        for key in ("force", "load", "actuator_force", "minimum_film"):
+        for key in TRACK_OPTIONS:
             if getattr(self, key) is not None:
                 _same_length(self.name, key, getattr(self, key), self.time)
         if self.time.size < 2 or not np.all(np.diff(self.time) > 0.0):

@@ -16,7 +16,7 @@ import rerun.blueprint as rrb
 from rotorsim.errors import InputError
 
 from . import series_view
-from .contents import OrbitTrack
+from .contents import TRACK_OPTIONS, OrbitTrack
 from .orbit_view import log_orbit_piece, log_surroundings, orbit_view
 from .timeline import TIME
 from .viewer import has_display, viewer_program
@@ -95,7 +95,7 @@ def _joined(before: OrbitTrack, piece: OrbitTrack) -> OrbitTrack:
         name: np.concatenate([getattr(before, name)[-1:], getattr(piece, name)])
         for name in ("time", "x", "y", "angle", "speed")
     }
-    for name in ("force", "load", "actuator_force", "minimum_film"):
+    for name in TRACK_OPTIONS:
         last, new = getattr(before, name), getattr(piece, name)
         if new is not None:
             # What a run began without (a load, say) was zero until now.

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rotorsim.model.lubricant import ZERO_CELSIUS
+
 from . import surfaces
 from .contents import FilmSurface
 
 Array = NDArray[np.float64]
-CELSIUS = 273.15
 MOVING_SHARE = 0.95
 """Of the moments of a run, whose peak pressures the scale holds."""
 
@@ -37,7 +38,7 @@ class Quantity:
         if self.name == "pressure":
             return surfaces.on_display_grid(film, film.pressure, at_ends=0.0) / 1e6
         assert film.temperature is not None
-        return surfaces.on_display_grid(film, film.temperature, at_ends=None) - CELSIUS
+        return surfaces.on_display_grid(film, film.temperature, at_ends=None) - ZERO_CELSIUS
 
     def height(self, values: Array) -> Array:
         """Displacement in journal radii."""
@@ -53,7 +54,7 @@ def quantities(films: Sequence[FilmSurface]) -> list[Quantity]:
     usual = float(np.quantile(moving, MOVING_SHARE)) if moving else 0.0
     pressure = max([usual, *resting]) / 1e6
     found = [Quantity("pressure", "MPa", 0.0, max(pressure, 1e-9), "viridis")]
-    warm = [film.temperature - CELSIUS for film in films if film.temperature is not None]
+    warm = [film.temperature - ZERO_CELSIUS for film in films if film.temperature is not None]
     if warm:
         low, high = min(float(t.min()) for t in warm), max(float(t.max()) for t in warm)
         found.append(Quantity("temperature", "°C", low, max(high, low + 1e-6), "inferno"))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,24 +28,23 @@ WINDOW_REVOLUTIONS = 20.0
 
 @dataclass(frozen=True)
 class Series:
-    """One plot: entity, title, and the vertical range that holds for every track (or None)."""
+    """One plot.
+
+    Attributes
+    ----------
+    entity, title : str
+        Both with the unit.
+    values : callable
+        Track -> (n,) array, or (n, 2) for x and y, in that unit; None where the track has none.
+    low, high : float, optional
+        Vertical range that holds for every track; what is left open follows the data.
+    """
 
     entity: str
     title: str
+    values: Callable[[OrbitTrack], Array | None]
     low: float | None = None
     high: float | None = None
-
-
-DISPLACEMENT = Series("displacement_um", "Displacement x, y [µm]")
-ECCENTRICITY = Series("eccentricity_ratio", "Eccentricity ratio [-]", 0.0, 1.05)
-MINIMUM_FILM = Series("minimum_film_um", "Minimum film thickness [µm]")
-LOAD = Series("load_N", "Load on the rotor x, y [N]")
-ACTUATOR_FORCE = Series("actuator_force_N", "Actuator force x, y [N]")
-SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]")
-WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", 0.0, 1.2)
-ALL_SERIES = (
-    LOAD, ACTUATOR_FORCE, DISPLACEMENT, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
-)  # fmt: skip
 
 
 def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
@@ -80,6 +79,34 @@ def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
     return np.where(np.abs(velocity) > STANDSTILL, ratio, np.nan)
 
 
+def _displacement(track: OrbitTrack) -> Array:
+    return np.stack([track.x, track.y], axis=-1) * MICRO
+
+
+def _disc(track: OrbitTrack) -> Array | None:
+    return None if track.disc is None else track.disc * MICRO
+
+
+DISPLACEMENT = Series("displacement_um", "Displacement x, y [µm]", _displacement)
+DISC = Series("disc_displacement_um", "Displacement of the disc x, y [µm]", _disc)
+LOAD = Series("load_N", "Load on the rotor x, y [N]", lambda track: track.load)
+ACTUATOR_FORCE = Series(
+    "actuator_force_N", "Actuator force x, y [N]", lambda track: track.actuator_force
+)
+ECCENTRICITY = Series(
+    "eccentricity_ratio", "Eccentricity ratio [-]", lambda track: track.eccentricity_ratio,
+    0.0, 1.05,
+)  # fmt: skip
+MINIMUM_FILM = Series(
+    "minimum_film_um", "Minimum film thickness [µm]", lambda track: track.thinnest_film * MICRO, 0.0
+)
+SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]", lambda track: track.speed * RPM, 0.0)
+WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", whirl_ratio, 0.0, 1.2)
+ALL_SERIES = (
+    LOAD, ACTUATOR_FORCE, DISPLACEMENT, DISC, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
+)  # fmt: skip
+
+
 def envelope_rows(values: Array, limit: int = ENVELOPE_LIMIT) -> Indices:
     """Choose samples that keep every stretch's extremes: about `limit` at most, in order."""
     count = values.size
@@ -102,34 +129,22 @@ def log_series(stream: rr.RecordingStream, track: OrbitTrack) -> None:
     colour = model_colour(track.name)
     pale = tuple(int(0.5 * c + 110) for c in colour)
     every = thin(track.time.size, SAMPLE_LIMIT)
-    pairs = (
-        (DISPLACEMENT, "µm", np.stack([track.x, track.y], axis=-1) * MICRO),
-        (LOAD, "N", track.load),
-        (ACTUATOR_FORCE, "N", track.actuator_force),
-    )
-    for series, unit, values in pairs:
-        if values is not None:
-            names = [f"{axis} [{unit}], {track.heading}" for axis in "xy"]
+    for series in ALL_SERIES:
+        values = series.values(track)
+        if values is None:
+            continue
+        if values.ndim == 1:
+            rows = envelope_rows(values)
+            _send(stream, series, track, values[:, None], rows, [track.heading], [colour])
+        else:
+            unit = series.title[series.title.index("[") :]
+            names = [f"{axis} {unit}, {track.heading}" for axis in "xy"]
             _send(stream, series, track, values, every, names, [colour, pale])
-    single = (
-        (ECCENTRICITY, track.eccentricity_ratio),
-        (MINIMUM_FILM, track.thinnest_film * MICRO),
-        (SPEED_SERIES, track.speed * RPM),
-        (WHIRL, whirl_ratio(track)),
-    )
-    for series, values in single:
-        rows = envelope_rows(values)
-        _send(stream, series, track, values[:, None], rows, [track.heading], [colour])
 
 
 def series_of(tracks: Sequence[OrbitTrack], wanted: Sequence[Series] = ALL_SERIES) -> list[Series]:
     """Those of the wanted series that the tracks have."""
-    kept = []
-    for series in wanted:
-        field = {LOAD: "load", ACTUATOR_FORCE: "actuator_force"}.get(series)
-        if field is None or any(getattr(track, field) is not None for track in tracks):
-            kept.append(series)
-    return kept
+    return [one for one in wanted if any(one.values(track) is not None for track in tracks)]
 
 
 def series_view(series: Series, tracks: Sequence[OrbitTrack]) -> rrb.TimeSeriesView:
@@ -173,19 +188,11 @@ def _send(
 def _vertical_range(series: Series, tracks: Sequence[OrbitTrack]) -> tuple[float, float]:
     if series.low is not None and series.high is not None:
         return series.low, series.high
-    for one, field in ((LOAD, "load"), (ACTUATOR_FORCE, "actuator_force")):
-        if series is one:
-            known = [getattr(track, field) for track in tracks if getattr(track, field) is not None]
-            most = max((float(np.abs(values).max()) for values in known), default=0.0)
-            return -1.1 * max(most, 1e-9), 1.1 * max(most, 1e-9)
-    if series is DISPLACEMENT:
-        both = [values for track in tracks for values in (track.x, track.y)]
-        low, high = (min(map(np.min, both)) * MICRO, max(map(np.max, both)) * MICRO)
-        margin = max(0.08 * (high - low), 1e-3 * tracks[0].reach * MICRO)
-        return float(low - margin), float(high + margin)
-    if series is MINIMUM_FILM:
-        return 0.0, 1.1 * max(float(track.thinnest_film.max()) for track in tracks) * MICRO
-    return 0.0, 1.1 * max(float(track.speed.max()) for track in tracks) * RPM
+    known = [values for track in tracks if (values := series.values(track)) is not None]
+    low = min(float(np.nanmin(values)) for values in known)
+    high = max(float(np.nanmax(values)) for values in known)
+    margin = max(0.08 * (high - low), 1e-3 * max(abs(low), abs(high)), 1e-9)
+    return low - margin if series.low is None else series.low, high + margin
 
 
 def _window(series: Series, tracks: Sequence[OrbitTrack]) -> rrb.VisibleTimeRanges | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..model import BushModel, EccentricityTarget, ShaftModel, ThermalModel
 from ..model.rotor import JeffcottRotor
-from ..pipeline.wording import KELVIN, RPM, number
+from ..pipeline.wording import RPM, ZERO_CELSIUS, number
 from . import html
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def _micrometres(value: float) -> str:
 
 
 def _celsius(value: float) -> str:
-    return f"{number(value - KELVIN)} °C"
+    return f"{number(value - ZERO_CELSIUS)} °C"
 
 
 def _degrees(value: float) -> str:
@@ -77,7 +77,7 @@ def _bearing(scenario: Scenario) -> Rows:
 
 def _oil(scenario: Scenario) -> Rows:
     oil, supply = scenario.lubricant, scenario.thermal.supply_temperature
-    temperatures = sorted({supply, 40.0 + KELVIN, 100.0 + KELVIN})
+    temperatures = sorted({supply, 40.0 + ZERO_CELSIUS, 100.0 + ZERO_CELSIUS})
     low, high = oil.temperature_range
     rows = [
         (f"viscosity at {_celsius(t)}", f"{number(float(oil.viscosity(t)) * 1e3)} mPa s")

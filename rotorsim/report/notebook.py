@@ -14,7 +14,7 @@ from ..operating_point import OperatingPoint
 from ..orbit import Orbit
 from ..pipeline.recordings import orbit_tracks
 from ..pipeline.stability import map_planes
-from ..pipeline.wording import KELVIN, RPM, critical_mass_text, number
+from ..pipeline.wording import RPM, ZERO_CELSIUS, critical_mass_text, number
 from ..stability.map import StabilityMap
 from ..table import CoefficientTable
 from . import html, results
@@ -42,7 +42,7 @@ def _point(point: OperatingPoint) -> str:
         ("Sommerfeld number", number(point.sommerfeld_number)),
         ("minimum film thickness", f"{number(point.min_film_thickness * 1e6)} µm"),
         ("maximum pressure", f"{number(point.max_pressure / 1e6)} MPa"),
-        ("maximum temperature", f"{number(point.max_temperature - KELVIN)} °C"),
+        ("maximum temperature", f"{number(point.max_temperature - ZERO_CELSIUS)} °C"),
         ("power loss", f"{number(point.power_loss / 1e3)} kW"),
         ("side flow", f"{number(point.side_flow * 6e4)} L/min"),
         ("critical mass per bearing", f"{critical_mass_text(point)} kg"),

@@ -11,8 +11,8 @@ import numpy as np
 
 from ..pipeline.summary import describe_orbit
 from ..pipeline.wording import (
-    KELVIN,
     RPM,
+    ZERO_CELSIUS,
     critical_mass_text,
     curve_title,
     number,
@@ -46,8 +46,8 @@ def point_row(point: OperatingPoint) -> list[str]:
         number(point.sommerfeld_number),
         number(point.min_film_thickness * 1e6, 3),
         number(point.max_pressure / 1e6, 3),
-        number(point.max_temperature - KELVIN, 3),
-        number(point.mean_temperature - KELVIN, 3),
+        number(point.max_temperature - ZERO_CELSIUS, 3),
+        number(point.mean_temperature - ZERO_CELSIUS, 3),
         number(point.friction_force),
         number(point.power_loss / 1e3),
         number(point.side_flow * 6e4),

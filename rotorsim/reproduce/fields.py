@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..model.lubricant import ZERO_CELSIUS
 from .claim import Evidence
 from .evidence import share
 from .paper import TOP_RPM
@@ -29,7 +30,7 @@ def profile(r: PaperResults, model: str, rpm: float) -> tuple[Array, Array, Arra
     angle = np.mod(fields.theta - point.attitude_angle - np.pi, FULL_TURN)
     order = np.argsort(angle)
     middle = fields.y.size // 2
-    temperature = fields.temperature[order, middle] - 273.15
+    temperature = fields.temperature[order, middle] - ZERO_CELSIUS
     return (
         np.degrees(angle[order]),
         fields.pressure[order, middle],

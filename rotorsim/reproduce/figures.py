@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..model.lubricant import ZERO_CELSIUS
 from .fields import profile
 from .paper import CLEARANCES, OIL, Walls
 from .results import ISOTHERMAL, LIQUID, THD, WHOLE, PaperResults, Run, quantity
@@ -123,12 +124,12 @@ def _figure_3(r: PaperResults) -> list[Panel]:
             pressure.append(line)
             if model == THD:
                 heat.append(Line(angle, hottest, label, number, dashes))
-    kelvin = np.linspace(40.0, 100.0, 61) + 273.15
+    kelvin = np.linspace(40.0, 100.0, 61) + ZERO_CELSIUS
     oil = [
-        Line(kelvin - 273.15, 1e3 * OIL.viscosity(kelvin), "0.034 per kelvin (used)", 0),
+        Line(kelvin - ZERO_CELSIUS, 1e3 * OIL.viscosity(kelvin), "0.034 per kelvin (used)", 0),
         Line(
-            kelvin - 273.15,
-            1e3 * 0.0277 * np.exp(-0.034 * ((kelvin - 273.15) / 40.0 - 1.0)),
+            kelvin - ZERO_CELSIUS,
+            1e3 * 0.0277 * np.exp(-0.034 * ((kelvin - ZERO_CELSIUS) / 40.0 - 1.0)),
             "Eq. 15 as printed, degC", 0, 2,
         ),
     ]  # fmt: skip

@@ -24,9 +24,10 @@ from ..model import (
     ThermalModel,
     ThermalSettings,
 )
+from ..model.lubricant import ZERO_CELSIUS
 
 RAD_PER_RPM = math.pi / 30.0
-AMBIENT = 40.0 + 273.15
+AMBIENT = 40.0 + ZERO_CELSIUS
 """T_a [K], Table 1."""
 CLEARANCES = (100e-6, 125e-6, 150e-6)
 """Section 4 [m]."""

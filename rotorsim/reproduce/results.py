@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import MeshSize
+from ..model.lubricant import ZERO_CELSIUS
 from ..operating_point import FilmFields, OperatingPoint
 from .paper import CLEARANCES, RAD_PER_RPM, TOP_RPM, Walls
 
@@ -149,7 +150,7 @@ def quantity(point: OperatingPoint, name: str) -> float:
         matrix = point.stiffness if name[0] == "k" else point.damping
         return float(matrix["xy".index(name[1]), "xy".index(name[2])])
     if name == "temperature":
-        return point.max_temperature - 273.15
+        return point.max_temperature - ZERO_CELSIUS
     value = getattr(point, name)
     return float("nan") if value is None else float(value)
 

@@ -49,7 +49,7 @@ initial_displacement = ["1 um", "0 um"]
 
 
 def environment(**more: str) -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "100", "NO_COLOR": "1", **more}
+    return {**os.environ, "COLUMNS": "100", "NO_COLOR": "1", **more}
 
 
 def rotorsim(*arguments: object, cwd: Path) -> subprocess.CompletedProcess:

@@ -229,7 +229,6 @@ def test_killing_a_sweep_twenty_times_loses_no_finished_point(tmp_path):
     scenario.write_text(text.split("[orbit]")[0], encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", KILLING, scenario, tmp_path / "long.journal"],
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
         capture_output=True,
         text=True,
         timeout=120,

@@ -289,10 +289,9 @@ def script(tmp_path):
         )
         (tmp_path / "solver_for_test.py").write_text(textwrap.dedent(text))
         (tmp_path / "script.py").write_text(SCRIPT.format(journal=str(tmp_path / "journal")))
-        path = os.pathsep.join([str(ROOT), str(tmp_path)])
         return subprocess.Popen(
             [sys.executable, str(tmp_path / "script.py")],
-            env={**os.environ, "PYTHONPATH": path},
+            env={**os.environ, "PYTHONPATH": str(tmp_path)},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
