@@ -42,9 +42,12 @@ def solved(eccentricity: float, ratio: float, **more) -> OperatingPoint:
     return point
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Markdown table, numbers to the right."""
-    lines = ["| " + " | ".join(head) + " |", "|" + " ---: |" * len(head)]
+def table(head: Sequence[str], rows: Iterable[Sequence[str]], words: int = 0) -> str:
+    """Markdown table, numbers to the right; the first `words` columns are text."""
+    lines = [
+        "| " + " | ".join(head) + " |",
+        "|" + " --- |" * words + " ---: |" * (len(head) - words),
+    ]
     return "\n".join([*lines, *("| " + " | ".join(row) + " |" for row in rows), ""])
 
 

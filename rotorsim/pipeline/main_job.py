@@ -5,6 +5,7 @@ from __future__ import annotations
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -71,6 +72,11 @@ class Results:
     def rotor_mass(self) -> float | None:
         """Per bearing [kg]; None without a rotor, or with one that is not rigid."""
         return rigid_mass(self.scenario.rotor)
+
+    @cached_property
+    def orbit_rows(self) -> list[dict[str, Any]]:
+        """What each orbit comes to (see `describe_orbit`)."""
+        return [describe_orbit(orbit) for orbit in self.orbits]
 
     @property
     def films_at_top_speed(self) -> list[FilmSurface]:
@@ -257,8 +263,8 @@ def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
     settings = results.scenario.orbit
     passive = settings is None or settings.actuator is None
     rows = []
-    for orbit in results.orbits:
-        row = describe_orbit(orbit)
+    for orbit, described in zip(results.orbits, results.orbit_rows, strict=True):
+        row = dict(described)
         # the eigenvalues are those of the film alone
         if row["kind"] == "constant speed" and mass is not None and passive:
             row["eigenvalue_growth_rate"] = expected_growth(results.table, orbit, mass)

@@ -51,11 +51,14 @@ def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "O
     return write_recording(path, contents)
 
 
-def orbit_notes(orbits: Sequence[Orbit]) -> str:
-    """What each run shows, how it ended, and what its film force takes for granted, as Markdown."""
+def orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None = None) -> str:
+    """What each run shows, how it ended, and what its film force takes for granted, as Markdown.
+
+    `rows` are what `describe_orbit` says of the orbits, where that is known already.
+    """
+    rows = [describe_orbit(orbit) for orbit in orbits] if rows is None else rows
     lines: list[str] = []
-    for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
-        row = describe_orbit(orbit)
+    for orbit, track, row in zip(orbits, orbit_tracks(orbits), rows, strict=True):
         first, last = (round(speed * RPM) for speed in row["speed"])
         rpm = f"{first} rpm" if first == last else f"{first} to {last} rpm"
         lines.append(

@@ -184,4 +184,4 @@ def markdown_summary(results: Results) -> str:
                     f"{critical} |"
                 )
         lines.append("")
-    return "\n".join([*lines, orbit_notes(results.orbits)])
+    return "\n".join([*lines, orbit_notes(results.orbits, results.orbit_rows)])
