@@ -14,7 +14,7 @@ from .film_commands import computed_table
 from .inputs import check_file, table_path
 from .options import ModelOption, ScenarioArgument, WorkersOption
 from .output import DONE, INCOMPLETE, Output
-from .progress import revolution_progress
+from .progress import late_progress, progress_bar
 
 if TYPE_CHECKING:
     from ..orbit import Orbit
@@ -147,7 +147,7 @@ def _simulate(
     live: bool,
 ) -> list[Orbit]:
     from ..pipeline import simulate_orbit
-    from ..pipeline.orbits import orbit_settings, scenario_schedule
+    from ..pipeline.orbits import orbit_settings, prepare_film, scenario_schedule
 
     total = scenario_schedule(orbit_settings(loaded)[0]).revolutions
     orbits = []
@@ -158,7 +158,9 @@ def _simulate(
 
             show = stack.enter_context(live_view(loaded.title))
         for name in models:
-            with revolution_progress(output, f"orbit {name}", total) as progress:
+            with late_progress(output, "force map, kept for later runs") as prepared:
+                prepare_film(loaded, name, prepared)
+            with progress_bar(output, f"orbit {name}", total) as progress:
 
                 def consume(piece: Orbit, progress: Callable[[float], None] = progress) -> None:
                     if show is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
 from ..pipeline.wording import describe
@@ -53,10 +53,8 @@ def _bar(output: Output, total: int) -> Iterator[Progress]:
 
 
 @contextmanager
-def revolution_progress(
-    output: Output, label: str, total: float
-) -> Iterator[Callable[[float], None]]:
-    """Give the callback for the revolutions done of `total`; a bar, on a terminal only."""
+def progress_bar(output: Output, label: str, total: float) -> Iterator[Callable[[float], None]]:
+    """Give the callback for how much of `total` is done; a bar, on a terminal only."""
     if output.quiet or not output.errors.is_terminal:
         yield lambda _done: None
         return
@@ -72,6 +70,22 @@ def revolution_progress(
     with Bar(*columns, console=output.errors) as bar:
         task = bar.add_task(label, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+@contextmanager
+def late_progress(output: Output, label: str) -> Iterator[Callable[[int, int], None]]:
+    """Give the callback for parts done and parts in all; nothing is shown before it is called."""
+    with ExitStack() as stack:
+        shown: list[Callable[[float], None]] = []
+
+        def report(done: int, total: int) -> None:
+            if not shown:
+                if not output.errors.is_terminal:
+                    output.note(label)
+                shown.append(stack.enter_context(progress_bar(output, label, total)))
+            shown[0](done)
+
+        yield report
 
 
 class _Lines:

@@ -13,6 +13,7 @@ from .film_force import (
     can_be_mapped,
     loaded_film,
     operating_film,
+    prepare_map,
 )
 from .film_map import cache_folder, film_force_map
 from .force_map import FilmMapForce, ForceMap
@@ -91,6 +92,7 @@ __all__ = [
     "operating_film",
     "orbit_ellipse",
     "poincare_points",
+    "prepare_map",
     "recognise",
     "rigid_rotor",
     "simulate",

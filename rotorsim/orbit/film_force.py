@@ -144,6 +144,23 @@ def can_be_mapped(case: Case) -> bool:
     )
 
 
+def prepare_map(case: Case, progress: Progress | None = None) -> None:
+    """Solve the map that the film of `case` is taken from, unless it is kept already.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable, optional
+        See `film_force_map`; not called where there is nothing to do.
+    """
+    if can_be_mapped(case):
+        film_force_map(_length_to_diameter(case), case.film.cavitation, progress=progress)
+
+
+def _length_to_diameter(case: Case) -> float:
+    return case.bearing.length / case.bearing.diameter
+
+
 def loaded_film(
     case: Case, speed: float, *, cache: Path | None = None, progress: Progress | None = None
 ) -> LoadedFilm:
@@ -178,8 +195,7 @@ def loaded_film(
 
 
 def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | None) -> LoadedFilm:
-    bearing = case.bearing
-    ratio = bearing.length / bearing.diameter
+    bearing, ratio = case.bearing, _length_to_diameter(case)
     force = FilmMapForce(
         film_force_map(ratio, case.film.cavitation, cache=cache, progress=progress),
         float(case.lubricant.viscosity(case.thermal.supply_temperature)),

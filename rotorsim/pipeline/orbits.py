@@ -80,6 +80,26 @@ def simulate_orbit(
     return replace(orbit, message=f"{orbit.message}; largest actuator force {most:.4g} N")
 
 
+def prepare_film(
+    scenario: Scenario, model: str, progress: Callable[[int, int], None] | None = None
+) -> None:
+    """Solve the force map of a nonlinear film unless it is kept: the first run's longest part.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    model : str
+        Thermal model.
+    progress : callable, optional
+        Called with rows done and rows in all, where there is something to do.
+    """
+    from ..orbit import prepare_map
+
+    settings, _ = orbit_settings(scenario)
+    if settings.force is OrbitForce.FILM:
+        prepare_map(scenario.case(settings.radial_clearance, model), progress)
+
+
 def orbit_problem(
     scenario: Scenario,
     table: CoefficientTable | None = None,
