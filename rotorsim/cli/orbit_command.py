@@ -39,7 +39,8 @@ def orbit(
         ),
     ] = None,
     figures: Annotated[
-        bool, typer.Option("--figures", help="Write figures/NAME/orbits.png and cascade.png too.")
+        bool,
+        typer.Option("--figures", help="Write orbits and cascades to figures/NAME too."),
     ] = False,
     gif: Annotated[
         bool, typer.Option("--gif", help="Write the animation figures/NAME/orbit.gif too.")

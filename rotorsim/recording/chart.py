@@ -23,7 +23,7 @@ def nice_ticks(low: float, high: float, count: int = 5) -> NDArray[np.float64]:
     """Round numbers (1, 2 or 5 times a power of ten apart) inside [low, high]."""
     raw = max(high - low, 1e-300) / count
     power = 10.0 ** np.floor(np.log10(raw))
-    step = power * min((1.0, 2.0, 5.0, 10.0), key=lambda factor: abs(factor * power - raw))
+    step = power * next(factor for factor in (1.0, 2.0, 5.0, 10.0) if factor * power > 0.75 * raw)
     first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
     return np.arange(first, last + 0.5) * step
 
@@ -114,5 +114,5 @@ def log_labels(
 def chart_bounds(extra_below: float = 0.0) -> rrb.VisualBounds2D:
     """View bounds that show a chart with its titles (and a legend of some height below)."""
     return rrb.VisualBounds2D(
-        x_range=[-0.25, WIDTH + 0.12], y_range=[-HEIGHT - 0.14, 0.24 + extra_below]
+        x_range=[-0.25, WIDTH + 0.2], y_range=[-HEIGHT - 0.14, 0.24 + extra_below]
     )

@@ -160,7 +160,9 @@ def _overview(contents: RecordingContents) -> Part:
         middle += films[-2:] if len(films) > 1 else [*films, *_film_views(contents, flat=True)]
     stability = _map_views(contents)[:1]
     if contents.eigenvalues:
-        stability.append(eigenvalue_view())
+        # The map is that of a rigid rotor: another one has its eigenvalues in front.
+        rigid = bool(contents.maps) and contents.maps[0].rotor_mass is not None
+        stability.insert(len(stability) if rigid else 0, eigenvalue_view())
     right: list[Part] = [_summary_view()]
     if stability:
         right.append(_tabs(stability))

@@ -105,12 +105,10 @@ def _verdict(found: Results) -> str:
     gaps = f" {len(counted)} of {len(found.points)} points did not converge." if counted else ""
     said = {curve_title(curve): verdict_at_top(curve) for curve in found.curves}
     unstable = [name for name, verdict in said.items() if verdict == "unstable"]
-    if found.rotor_mass is None or not found.curves:
-        return html.paragraph(f"No rigid rotor given: no verdict on it.{gaps}", "verdict")
-    at = (
-        f"at {found.curves[0].speed[-1] * RPM:.0f} rpm with {number(found.rotor_mass)} kg per "
-        "bearing"
-    )
+    rotor = found.curves[0].rotor if found.curves else ""
+    if not rotor:
+        return html.paragraph(f"No rotor given: no verdict on it.{gaps}", "verdict")
+    at = f"at {found.curves[0].speed[-1] * RPM:.0f} rpm with the {rotor}"
     if unstable:
         return html.paragraph(f"Unstable {at}: {'; '.join(unstable)}.{gaps}", '"verdict bad"')
     if "-" in said.values():

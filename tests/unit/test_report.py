@@ -104,7 +104,7 @@ def test_the_page_says_what_was_computed(results, points):
     assert "eccentricity ratio (given) 0.5" in said
     assert f"{points[-1].load / 1e3:.4g}" in said
     assert f"{points[-1].stiffness[0, 0] / 1e6:.4g}" in said
-    assert "Unstable at 12000 rpm with 2000 kg per bearing: isothermal" in said
+    assert "Unstable at 12000 rpm with the rotor of 2000 kg per bearing: isothermal" in said
     assert "None: every point converged" in said
 
 
@@ -134,7 +134,7 @@ def test_stable_incomplete_and_unknown_are_told_apart(results, points, scenario)
     assert "Stable at 12000 rpm" in words_of(report_page(light))
     alone = Scenario.from_text(TEXT.split("[rotor]")[0])
     unladen = replace(results, scenario=alone, curves=tuple(stability_curves(table)))
-    assert "No rigid rotor given" in words_of(report_page(unladen))
+    assert "No rotor given" in words_of(report_page(unladen))
     lost = replace(
         points[-1], status=SolveStatus.NOT_CONVERGED, message="try a finer mesh",
         stiffness=np.full((2, 2), np.nan), damping=np.full((2, 2), np.nan),
