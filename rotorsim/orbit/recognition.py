@@ -68,7 +68,8 @@ def recognise(orbit: Orbit) -> Recognition:
     if period is None and (abs(after - before) > _STEADY * after or drift > 5 * _STEADY * after):
         trend = "growing" if after > before else "decaying"
         return Recognition(OrbitStatus.COMPLETED, f"still {trend}")
-    start = _steady_from(orbit, after)
+    # At least what was found steady above.
+    start = _steady_from(orbit, after, size // 2 if period is None else 3 * size // 4)
     if period is not None:
         turns = "turn" if period == 1 else "turns"
         message = f"repeats after {period} {turns} of the shaft"
@@ -130,10 +131,10 @@ def _rest_from(orbit: Orbit) -> int:
     return int(outside[-1]) + 1 if outside.size else 0
 
 
-def _steady_from(orbit: Orbit, amplitude: float) -> int:
-    """First sample of the last stretch whose blocks all have the final amplitude (to 5 %)."""
+def _steady_from(orbit: Orbit, amplitude: float, known: int) -> int:
+    """First sample of the stretch before `known` whose blocks all have that amplitude (to 5 %)."""
     block = _BLOCK * orbit.samples_per_revolution
-    start = orbit.t.size - block
+    start = known
     while start >= block:
         swing = _swing(orbit.part(start - block, start))
         if abs(swing - amplitude) > 0.05 * amplitude:

@@ -381,3 +381,19 @@ def test_contact_boundary_is_where_the_film_ends():
     assert line[0] == pytest.approx(line[-1])
     assert np.abs(minimum_film(lobed, *line.T)).max() < 1e-3 * lobed.radial_clearance
     assert minimum_film(lobed, *(0.9 * line.T)).min() > 0.0
+
+
+def test_a_slow_load_leaves_a_long_steady_part():
+    """A load that takes four turns: blocks of few turns hold no whole cycle of it."""
+    orbit = simulate(
+        OrbitProblem(
+            LinearForce(constant_coefficients(5e6 * np.eye(2), 5e4 * np.eye(2)), 1e-4),
+            rigid_rotor(50.0),
+            SpeedSchedule.constant(900.0, 120.0),
+            loads=(HarmonicForce((100.0, 0.0), frequency=240.0),),
+        )
+    )
+    found = recognise(orbit)
+    assert found.status is OrbitStatus.PERIODIC
+    assert found.steady_from is not None
+    assert found.steady_from <= orbit.t.size // 2
