@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..film.banded import SingularFilmError
+from ..film.banded import NoFilmError, SingularFilmError
 from ..film.layers import LayerIntegrals
 from ..film.problem import FilmProblem, film_state
 from ..film.solution import FilmSolution, solve_film
@@ -216,7 +216,7 @@ def operating_film(case: Case, speed: float) -> FilmSolution:
     """Film at rest about which an orbit runs, at `speed` [rad/s]; InputError without one."""
     try:
         solution = solve_film(case, speed)
-    except SingularFilmError as error:
+    except (NoFilmError, SingularFilmError) as error:
         raise InputError(
             f"the film of the orbit's operating point cannot be solved: {error}",
             key="orbit.speed",

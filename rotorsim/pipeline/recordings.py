@@ -137,6 +137,8 @@ def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
             rows = cascade(orbit)
         except InputError:  # too short a run for one spectrum
             continue
+        if np.ptp(rows.speed) <= 0.0:  # one block alone
+            continue
         order = np.argsort(rows.speed)
         frequency = np.linspace(0.0, 2.0 * float(rows.speed.max()), CASCADE_LINES)
         known = zip(rows.frequency[order], rows.amplitude[order], strict=True)
