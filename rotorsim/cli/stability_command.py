@@ -285,9 +285,11 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
     from .stability_tables import curve_table, summary_table
 
     output = work.output
-    scenario, table = _table_of(output, source, work.workers, work.scheduler)
-    table = table if work.model is None else table.select(thermal_model=work.model)
+    scenario, stored = _source(output, source)
+    # Before films are solved: what is wrong with the rotor is said at once.
     rotor = wanted_rotor(scenario, *rotor_texts)
+    table = _solved(work, source, scenario) if stored is None else stored
+    table = table if work.model is None else table.select(thermal_model=work.model)
     mass = rotor.mass if isinstance(rotor, RigidShaft) else None
     curves = stability_curves(table, rotor)
     found = campbell_curves(table, rotor, modes) if rotor is not None else [None] * len(curves)
@@ -319,21 +321,24 @@ def _report_failed(output: Output, bad: int, total: int) -> int:
     return INCOMPLETE if bad else DONE
 
 
-def _table_of(
-    output: Output, source: Path, workers: int | None, scheduler: str | None
-) -> tuple[Scenario | None, CoefficientTable]:
-    """Table at `source`, with the scenario it was made from where that is known."""
+def _source(output: Output, source: Path) -> tuple[Scenario | None, CoefficientTable | None]:
+    """Scenario at `source`, or of the table there where it says; the table, if it is one."""
     from ..interchange import is_table, read_table
     from ..scenario import load_scenario
 
     if is_table(source):
         table = read_table(source)
         return _scenario_of(output, source, table), table
-    scenario = load_scenario(source)
+    return load_scenario(source), None
+
+
+def _solved(work: _Work, source: Path, scenario: Scenario | None) -> CoefficientTable:
+    """Table of a scenario, solved."""
+    assert scenario is not None
     path = table_path(source, Path())
-    _, table = computed_table(output, scenario, path, workers, scheduler)
-    output.note(f"the table is in {path}")
-    return scenario, table
+    _, table = computed_table(work.output, scenario, path, work.workers, work.scheduler)
+    work.output.note(f"the table is in {path}")
+    return table
 
 
 def _scenario_of(output: Output, source: Path, table: CoefficientTable) -> Scenario | None:

@@ -80,7 +80,9 @@ RotorOption = Annotated[
     typer.Option(
         "--rotor",
         metavar="FILE",
-        help="Any rotor: matrices M, D, G, K and bearing_nodes in a .npz or .mat file (SI).",
+        help="Any rotor: matrices M, K, D (or C) and G in a .npz or .mat file (SI), without the "
+        "bearings; bearing_nodes, dofs_per_node. Its x lies along the load; G times the speed adds "
+        "to D for a shaft that turns from x to y; every bearing node gets the same film.",
         show_default="the scenario's",
         rich_help_panel=_ROTOR,
     ),
@@ -263,7 +265,9 @@ def wanted_rotor(
 
     if file is not None:
         if mass is not None or shaft_stiffness is not None:
-            raise InputError("goes without --mass and --shaft-stiffness", key="--rotor", value=file)
+            raise InputError(
+                "goes without --mass and --shaft-stiffness", key="--rotor", value=str(file)
+            )
         return load_rotor(file, node_list(nodes), dofs)
     if nodes is not None or dofs is not None:
         key = "--bearing-nodes" if nodes is not None else "--dofs-per-node"

@@ -16,29 +16,43 @@ if TYPE_CHECKING:
 
 
 def curve_table(curve: StabilityCurve) -> Table:
-    """One curve over speed."""
-    head = ["rpm", "M_crit kg", "M c w2/W", "whirl ratio", "verdict"]
+    """One curve over speed.
+
+    The critical mass is a rigid rotor's: beside another rotor it would not be that rotor's limit.
+    """
+    rigid = curve.eigenvalues is None or curve.mass is not None
+    head = ["rpm", "M_crit kg", "M c w2/W", "whirl ratio", "verdict"] if rigid else ["rpm"]
     if curve.eigenvalues is not None:
-        head += ["decay 1/s", "whirl rpm"]
+        head += ["decay 1/s", "whirl rpm"] if rigid else ["verdict", "decay 1/s", "whirl rpm"]
     table = grid(curve_title(curve), *head)
     for index, speed in enumerate(curve.speed):
-        mass = curve.critical_mass[index]
-        verdict = str(curve.stability[index])
-        said = VERDICTS.get(verdict)
-        if verdict == "threshold" and curve.mass is not None:
-            said = "stable" if curve.mass < mass else "unstable"
-        cells = [
-            f"{speed * RPM:.0f}",
-            number(mass),
-            number(curve.critical_mass_dimensionless[index]),
-            number(curve.whirl_frequency_ratio[index], 3),
-            said or "stable below",
-        ]
+        cells = [f"{speed * RPM:.0f}"]
+        if rigid:
+            cells += _threshold_cells(curve, index)
         if curve.eigenvalues is not None:
             slowest = curve.eigenvalues[index, 0]
+            if not rigid:
+                known = math.isfinite(slowest.real)
+                said = "stable" if slowest.real < 0.0 else "unstable"
+                cells.append(said if known else VERDICTS[""])
             cells += [number(-slowest.real), number(abs(slowest.imag) * RPM)]
         table.add_row(*cells)
     return table
+
+
+def _threshold_cells(curve: StabilityCurve, index: int) -> list[str]:
+    """Critical mass, dimensionless too, whirl ratio, and what they say of the mass."""
+    mass = curve.critical_mass[index]
+    verdict = str(curve.stability[index])
+    said = VERDICTS.get(verdict)
+    if verdict == "threshold" and curve.mass is not None:
+        said = "stable" if curve.mass < mass else "unstable"
+    return [
+        number(mass),
+        number(curve.critical_mass_dimensionless[index]),
+        number(curve.whirl_frequency_ratio[index], 3),
+        said or "stable below",
+    ]
 
 
 def summary_table(curves: Sequence[StabilityCurve]) -> Table:

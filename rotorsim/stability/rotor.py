@@ -19,6 +19,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SYMMETRY = 1e-8
+_IN_FILE = {"mass": "M", "damping": "D or C", "gyroscopic": "G", "stiffness": "K"}
+"""Names of the matrices in a file."""
+_KNOWN = ("M", "D", "C", "G", "K", "bearing_nodes", "dofs_per_node")
+_KNOWN_WORDS = "M, D or C (damping), G, K, bearing_nodes, dofs_per_node"
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,19 +68,25 @@ class GeneralRotor:
     def _check_square(self, name: str, value: Array) -> None:
         if value.ndim != 2 or value.shape[0] != value.shape[1] or not value.size:
             raise InputError(
-                "must be a square matrix", source=self.source, key=name, value=value.shape
-            )
+                "must be a square matrix", source=self.source, key=self._label(name),
+                value=value.shape,
+            )  # fmt: skip
         if value.shape != self.mass.shape:
             raise InputError(
                 f"must have the mass matrix's size {self.mass.shape}",
-                source=self.source, key=name, value=value.shape,
+                source=self.source, key=self._label(name), value=value.shape,
             )  # fmt: skip
         if not np.all(np.isfinite(value)):
             row, column = np.argwhere(~np.isfinite(value))[0]
             raise InputError(
-                "must be finite", source=self.source, key=f"{name}, row {row}, column {column}",
+                "must be finite", source=self.source,
+                key=f"{self._label(name)}, row {row}, column {column}",
                 value=float(value[row, column]),
             )  # fmt: skip
+
+    def _label(self, name: str) -> str:
+        """How a message calls a matrix: by the file's name for it where it is from a file."""
+        return name if self.source is None else f"{_IN_FILE[name]} ({name})"
 
     def _check_mass(self) -> None:
         self._check_mirror("mass", self.mass, 1.0, "symmetric")
@@ -84,7 +94,7 @@ class GeneralRotor:
         if not smallest > 0.0:
             raise InputError(
                 "must be positive definite (smallest eigenvalue given)",
-                source=self.source, key="mass", value=float(smallest),
+                source=self.source, key=self._label("mass"), value=float(smallest),
             )  # fmt: skip
 
     def _check_mirror(self, name: str, value: Array, sign: float, word: str) -> None:
@@ -93,7 +103,7 @@ class GeneralRotor:
             row, column = np.unravel_index(int(off.argmax()), off.shape)
             raise InputError(
                 f"must be {word}: entry ({column}, {row}) is {value[column, row]:.6g}",
-                source=self.source, key=f"{name}, row {row}, column {column}",
+                source=self.source, key=f"{self._label(name)}, row {row}, column {column}",
                 value=float(value[row, column]),
             )  # fmt: skip
 
@@ -142,7 +152,8 @@ def load_rotor(
 ) -> GeneralRotor:
     """Read a rotor from .npz or .mat with M, D, G, K, ``bearing_nodes`` and ``dofs_per_node``.
 
-    D and G may be left out (zero), ``dofs_per_node`` too (4).
+    The damping matrix may be called C as well. D (or C) and G may be left out (zero),
+    ``dofs_per_node`` too (4). An array of another name is refused: it might be one that counts.
 
     Parameters
     ----------
@@ -159,19 +170,17 @@ def load_rotor(
     """
     source = Path(path)
     data = dict(_read(source))
+    _check_names(data, source, bearing_nodes is not None)
     if bearing_nodes is not None:
         data["bearing_nodes"] = np.asarray(bearing_nodes)
     if dofs_per_node is not None:
         data["dofs_per_node"] = dofs_per_node
-    missing = [name for name in ("M", "K", "bearing_nodes") if name not in data]
-    if missing:
-        raise InputError(f"arrays are missing: {', '.join(missing)}", source=source)
+    if "C" in data:
+        data["D"] = data.pop("C")
     try:
-        mass = np.asarray(data["M"], dtype=float)
+        mass = _matrix(data["M"])
         zero = np.zeros_like(mass)
-        damping, gyroscopic, stiffness = (
-            np.asarray(data.get(name, zero), dtype=float) for name in "DGK"
-        )
+        damping, gyroscopic, stiffness = (_matrix(data.get(name, zero)) for name in "DGK")
         nodes = np.atleast_1d(np.asarray(data["bearing_nodes"], dtype=float)).ravel()
         per_node = float(np.asarray(data.get("dofs_per_node", 4), dtype=float).ravel()[0])
     except (TypeError, ValueError, IndexError) as error:
@@ -189,16 +198,52 @@ def load_rotor(
     )  # fmt: skip
 
 
+def _check_names(data: Mapping[str, Any], source: Path, nodes_given: bool) -> None:
+    """Refuse what is unknown, missing or there twice."""
+    held = f"the file holds {', '.join(data) or 'nothing'}"
+    unknown = [name for name in data if name not in _KNOWN]
+    if unknown:
+        raise InputError(
+            f"no such array in a rotor; known are {_KNOWN_WORDS}; {held}",
+            source=source, key=", ".join(unknown),
+        )  # fmt: skip
+    if "C" in data and "D" in data:
+        raise InputError("both are damping: keep one", source=source, key="C, D")
+    needed = ("M", "K") if nodes_given else ("M", "K", "bearing_nodes")
+    missing = [name for name in needed if name not in data]
+    if missing:
+        nodes = (
+            "; the nodes that bearings carry, from 0, may be given beside the file: "
+            '--bearing-nodes "1,7", in Python bearing_nodes=(1, 7)'
+        )
+        hint = nodes if "bearing_nodes" in missing else ""
+        raise InputError(f"arrays are missing: {', '.join(missing)}; {held}{hint}", source=source)
+
+
+def _matrix(value: Any) -> Array:
+    # MATLAB's sparse matrices come as such.
+    return np.asarray(value.toarray() if hasattr(value, "toarray") else value, dtype=float)
+
+
 def _read(source: Path) -> Mapping[str, Any]:
+    if source.suffix not in (".npz", ".mat"):
+        raise InputError("must end in .npz or .mat", source=source)
     try:
         if source.suffix == ".npz":
             # No pickles: a file from elsewhere must not run code.
             with np.load(source, allow_pickle=False) as file:
                 return {name: file[name] for name in file.files}
-        if source.suffix == ".mat":
-            from scipy.io import loadmat
+        from scipy.io import loadmat
 
-            return loadmat(source)
+        return {name: v for name, v in loadmat(source).items() if not name.startswith("__")}
+    except OSError as error:
+        reason = error.strerror or "it is damaged, or no such file"
+        raise InputError(f"cannot be read: {reason}", source=source) from error
+    except NotImplementedError as error:
+        raise InputError(
+            "cannot be read: save it in MATLAB with the option -v7", source=source
+        ) from error
     except Exception as error:  # the readers raise a dozen kinds on damaged files
-        raise InputError(f"cannot be read: {error}", source=source) from error
-    raise InputError("must end in .npz or .mat", source=source)
+        raise InputError(
+            f"cannot be read: no {source.suffix} file of plain arrays of numbers", source=source
+        ) from error

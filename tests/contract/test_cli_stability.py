@@ -129,6 +129,50 @@ def test_a_general_rotor_from_npz_and_mat(here, tmp_path):
     assert moved["speed"] != pytest.approx(threshold["speed"], rel=0.01)
 
 
+def test_damping_called_c_gives_the_same_verdict(here):
+    arrays = shaft_arrays(D=4e3 * np.eye(36))
+    np.savez("d.npz", **arrays)
+    arrays["C"] = arrays.pop("D")
+    np.savez("c.npz", **arrays)
+    np.savez("without.npz", **shaft_arrays())
+    said = []
+    for name in ("d.npz", "c.npz", "without.npz"):
+        done = here("stability", DATA / "ross_bearing.csv", "--rotor", name, "--json")
+        assert done.returncode == 0, done.stderr
+        said.append(strict(done.stdout)["curves"][0])
+    assert said[0] == said[1]
+    assert said[0]["threshold_speeds"] != said[2]["threshold_speeds"]
+
+
+@pytest.mark.parametrize(
+    "rotor", [("--rotor", "r.npz"), ("--mass", "200 kg", "--shaft-stiffness", "20 MN/m")]
+)
+def test_the_table_of_a_rotor_that_is_not_rigid_speaks_of_its_own_verdict(here, rotor):
+    np.savez("r.npz", **shaft_arrays())
+    done = here("stability", DATA / "ross_bearing.csv", *rotor)
+    assert done.returncode == 0, done.stderr
+    assert "M_crit" not in done.stdout
+    assert "stable below" not in done.stdout
+    rows = done.stdout.split("Least stable mode")[0].splitlines()
+    found = [line.split() for line in rows if "stable" in line and line[0].isdigit()]
+    assert {row[1] for row in found} == {"stable", "unstable"}
+    assert all((row[1] == "stable") == (float(row[2]) > 0.0) for row in found)
+
+
+def test_a_wrong_rotor_is_refused_before_films_are_solved(here, monkeypatch):
+    from rotorsim.cli import stability_command
+
+    def solved(*_):
+        raise AssertionError("films were solved")
+
+    monkeypatch.setattr(stability_command, "computed_table", solved)
+    np.savez("r.npz", **shaft_arrays(Damping=np.eye(36)))
+    done = here("stability", "small.toml", "--rotor", "r.npz", "--mass", "900 kg")
+    refuse(done, ["--rotor", "--mass", "'r.npz'"])
+    assert "PosixPath" not in done.stderr
+    refuse(here("stability", "small.toml", "--rotor", "r.npz"), ["Damping", "D or C"])
+
+
 def test_a_flexible_shaft_lowers_the_threshold(here):
     speeds = []
     for more in ((), ("--shaft-stiffness", "50 MN/m"), ("--shaft-stiffness", "20 MN/m")):

@@ -4,6 +4,7 @@ import control
 import numpy as np
 import pytest
 from scipy.io import savemat
+from scipy.sparse import csc_matrix
 
 from rotorsim.errors import InputError
 from rotorsim.stability.matrices import state_matrix
@@ -181,11 +182,52 @@ def test_rotor_files(tmp_path, kind):
         load_rotor(path)
 
 
+@pytest.mark.parametrize("kind", ["npz", "mat"])
+def test_damping_of_a_file_counts_whether_it_is_called_d_or_c(tmp_path, kind):
+    rotor = two_node_rotor(damping=30.0 * np.eye(4))
+    arrays = {
+        "M": rotor.mass, "K": csc_matrix(rotor.stiffness) if kind == "mat" else rotor.stiffness,
+        "bearing_nodes": [1], "dofs_per_node": 2,
+    }  # fmt: skip
+    path = tmp_path / f"rotor.{kind}"
+    for extra in ({"D": rotor.damping}, {"C": rotor.damping}):
+        data = {**arrays, **extra}
+        np.savez(path, **data) if kind == "npz" else savemat(path, data)
+        found = load_rotor(path)
+        assert np.array_equal(found.state_matrix(FILM), rotor.state_matrix(FILM))
+        assert not np.array_equal(found.state_matrix(FILM), two_node_rotor().state_matrix(FILM))
+
+
+@pytest.mark.parametrize(
+    ("extra", "message"),
+    [
+        ({"D": np.eye(4), "C": np.eye(4)}, "C, D: both are damping"),
+        ({"Damping": np.eye(4)}, r"Damping: no such array.* D or C .*the file holds M, K, b"),
+        ({"G": np.eye(4)}, r"G \(gyroscopic\), row 0, column 0: must be skew"),
+        ({"C": np.full((4, 4), np.nan)}, r"D or C \(damping\), row 0"),
+        ({"M": np.ones((4, 4))}, r"M \(mass\): must be positive"),
+    ],
+)
+def test_arrays_of_a_file_are_named_as_in_the_file(tmp_path, extra, message):
+    rotor = two_node_rotor()
+    arrays = {"M": rotor.mass, "K": rotor.stiffness, "bearing_nodes": [1], "dofs_per_node": 2}
+    np.savez(tmp_path / "rotor.npz", **(arrays | extra))
+    with pytest.raises(InputError, match=message):
+        load_rotor(tmp_path / "rotor.npz")
+
+
+def test_missing_bearing_nodes_say_how_to_give_them(tmp_path):
+    np.savez(tmp_path / "r.npz", M=np.eye(4), K=np.eye(4))
+    with pytest.raises(InputError, match=r"bearing_nodes; the file holds M, K; .*--bearing-nodes"):
+        load_rotor(tmp_path / "r.npz")
+
+
 def test_pickled_arrays_and_other_files_are_refused(tmp_path):
     path = tmp_path / "rotor.npz"
     np.savez(path, M=np.array([{"a": 1}], dtype=object), K=1, bearing_nodes=0)
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="cannot be read") as raised:
         load_rotor(path)
+    assert "allow_pickle" not in str(raised.value)
     with pytest.raises(InputError, match=r"\.npz or \.mat"):
         load_rotor(tmp_path / "rotor.txt")
     with pytest.raises(InputError, match="cannot be read"):
