@@ -41,7 +41,8 @@ class InputError(RotorsimError, ValueError):
         self.key = key
         self.value = value
         where = [part for part in (self.source, key) if part]
-        found = "" if value is None else f" (found: {value!r})"
+        shown = str(value) if isinstance(value, Path) else value
+        found = "" if value is None else f" (found: {shown!r})"
         super().__init__(": ".join([*where, message + found]))
 
 

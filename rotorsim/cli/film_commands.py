@@ -162,7 +162,7 @@ def computed_table(
     from .progress import film_progress
 
     check_workers(workers)
-    check_file(path, ".nc")
+    check_file(path, ".nc", scenario.source)
     journal = journal_path(path)
     cases = list(scenario.cases())
     before = len(Journal(journal))

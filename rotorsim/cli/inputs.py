@@ -59,19 +59,36 @@ def check_workers(workers: int | None) -> None:
         raise InputError("must be 1 or more", key="--workers", value=workers)
 
 
-def check_file(path: Path, suffix: str = "") -> None:
-    """Refuse, before any work is done, a file that could not be written.
+def check_file(path: Path, suffix: str = "", source: Path | None = None) -> None:
+    """Refuse, before any work is done, a file that could not or must not be written.
+
+    Parameters
+    ----------
+    path : Path
+        What would be written.
+    suffix : str
+        How its name must end, ``.nc`` for example.
+    source : Path, optional
+        The input, which no output may replace.
 
     Raises
     ------
     InputError
-        It is a directory or a device, ends otherwise than in `suffix`, or its folder cannot be
-        made or written to.
+        It is a directory or a device, ends otherwise than in `suffix`, is the input itself, or
+        its folder cannot be made or written to.
     """
     if path.is_dir() or not path.name:
         raise InputError("is a directory; give a file", key="--output", value=str(path))
     if path.suffix.lower() != suffix and suffix:
-        raise InputError(f"must end in {suffix}", key="--output", value=str(path))
+        example = path.with_suffix(suffix)
+        raise InputError(
+            f'must end in {suffix}; write for example "{example}"', key="--output", value=str(path)
+        )
+    if source is not None and path.exists() and source.exists() and path.samefile(source):
+        raise InputError(
+            "is the input itself and would be lost; give another file", key="--output",
+            value=str(path),
+        )  # fmt: skip
     if path.exists() and not path.is_file():
         raise InputError("is no ordinary file", key="--output", value=str(path))
     check_folder(path.parent)

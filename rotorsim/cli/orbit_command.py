@@ -72,7 +72,7 @@ def orbit(
     loaded = load_scenario(scenario)
     settings, _ = orbit_settings(loaded)  # what is missing should be said before the work
     path = recording or Path("logs") / f"{scenario.stem}.rrd"
-    check_file(path)
+    check_file(path, ".rrd", scenario)
     _check_mp4(mp4)
     coefficients = _coefficients(output, loaded, scenario, table, workers)
     orbits = _simulate(output, loaded, coefficients, _models(loaded, coefficients, model), live)

@@ -37,7 +37,7 @@ def report(
 
     loaded = load_scenario(scenario)
     page = file or Path("reports") / f"{scenario.stem}.html"
-    check_file(page)
+    check_file(page, ".html", scenario)
     table = table_path(scenario, Path())
     points, coefficients = computed_table(output, loaded, table, workers, scheduler)
     results = compute(loaded, points, coefficients, output.note)

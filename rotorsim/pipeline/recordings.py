@@ -28,7 +28,7 @@ def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "O
     ----------
     orbits : Orbit or iterable of Orbit
     path : str or Path
-        Usually ``logs/NAME.rrd``.
+        Ends in ``.rrd``, usually ``logs/NAME.rrd``.
     title : str
 
     Returns

@@ -7,6 +7,7 @@ from pathlib import Path
 import rerun as rr
 
 from rotorsim.atomic import replacing
+from rotorsim.errors import InputError
 
 from .contents import RecordingContents
 from .eigenvalue_view import log_eigenvalues
@@ -29,8 +30,8 @@ def write_recording(
     Parameters
     ----------
     path : str or Path
-        Usually ``logs/NAME.rrd``; missing folders are made. An existing file is replaced only
-        once the new one is whole.
+        Ends in ``.rrd``, usually ``logs/NAME.rrd``; missing folders are made. An existing file is
+        replaced only once the new one is whole.
     contents : RecordingContents
     page : str
         The page shown first, one of `rotorsim.recording.layout.PAGES`.
@@ -40,12 +41,21 @@ def write_recording(
     Path
         The file written.
 
+    Raises
+    ------
+    InputError
+        The path does not end in ``.rrd``.
+
     Notes
     -----
     Nothing is sent anywhere: the stream writes to the file alone. Two identical runs give files
     that differ in their time stamps only (``rerun rrd compare --unordered`` says so).
     """
     target = Path(path)
+    if target.suffix.lower() != ".rrd" or not target.name:
+        raise InputError(
+            "a recording's name must end in .rrd, for example logs/dal.rrd", key="path", value=path
+        )
     # A fresh identity each time: a viewer that still shows the old file would mix the two.
     stream = rr.RecordingStream(APPLICATION, send_properties=False)
     with replacing(target) as temporary:
