@@ -291,7 +291,9 @@ def _through_energy(
     _, leaving = march(energy, viscosity, walls, inlet, temperature, passes=passes, leaving=leaving)
     shaft, bore = heat.shaft, heat.bush
     if problem.thermal.shaft is ShaftModel.INSULATED:
-        shaft += heat_to_shaft(energy, temperature, shaft) / _film_conductance(energy)
+        conductance = _film_conductance(energy)
+        if conductance > 0.0:  # a film that has run dry heats no shaft
+            shaft += heat_to_shaft(energy, temperature, shaft) / conductance
     if problem.thermal.bush is BushModel.INSULATED:
         bore = temperature[:, :, 0].copy()
     elif bush is not None:

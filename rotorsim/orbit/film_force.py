@@ -86,8 +86,12 @@ class SolvedFilmForce:
     @classmethod
     def of(cls, case: Case, solution: FilmSolution) -> SolvedFilmForce:
         """Force of the film that was solved for `case`, its viscosity field kept."""
+        mesh = solution.problem.mesh
+        # A moving journal may press the film in several places at once. The rule of one stretch of
+        # film from each beginning is for a film at rest: here it would make the force jump.
+        mesh = replace(mesh, region=np.full_like(mesh.region, -1))
         return cls(
-            problem=solution.problem,
+            problem=replace(solution.problem, mesh=mesh),
             layers=solution.state.layers,
             frame=solution.frame,
             bearing=case.bearing,

@@ -238,3 +238,24 @@ def test_touch_down_in_a_lemon_bore_is_at_its_lobes():
     end = np.hypot(orbit.events[0].x, orbit.events[0].y) / CLEARANCE
     assert 0.25 < end < 0.5
     assert np.all(orbit.min_film > 0.2 * CLEARANCE)
+
+
+def test_force_has_no_jumps():
+    """As the journal's motion changes little by little, so does the force.
+
+    With ``max_film`` the film lies on both sides of a line p = 0; which side carries more changes
+    on the way.
+    """
+    speed = 0.75 * SPEED
+    film = isothermal_case(
+        LoadTarget(800.0), length_to_diameter=1.0, mesh=(48, 8), viscosity=VISCOSITY,
+        inception="max_film", radius=RADIUS, clearance=CLEARANCE,
+    )  # fmt: skip
+    force = SolvedFilmForce.of(film, solve_film(film, speed))
+    share = np.linspace(0.0, 1.0, 801)[:, None]
+    start, end = np.array([-0.126, -0.279, 0.09, -0.06]), np.array([-0.126, -0.279, 0.19, -0.16])
+    motion = (start + share * (end - start)) * CLEARANCE
+    motion[:, 2:] *= speed
+    along = np.array([force.force(*row, speed) for row in motion])
+    steps = np.hypot(*np.diff(along, axis=0).T)
+    assert steps.max() < 0.02 * np.hypot(*np.ptp(along, axis=0))
