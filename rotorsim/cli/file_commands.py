@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
+from ..file_kinds import HEAD, FileKind, recognise, sentence
 from ..shipped import shipped_scenarios
 from .inputs import check_file, check_folder
 from .options import TableArgument
@@ -212,8 +213,13 @@ def view(
 
     if recording.is_file():
         with recording.open("rb") as stream:
-            if stream.read(3) != b"RRF":
-                raise InputError("is no recording of rerun (.rrd)", source=recording)
+            head = stream.read(HEAD)
+        if recognise(head) is not FileKind.RECORDING:
+            kind = recognise(head, recording.suffix.lower())
+            said = (
+                "is no recording of rerun (.rrd)" if kind is FileKind.RECORDING else sentence(kind)
+            )
+            raise InputError(said or "is no recording of rerun (.rrd)", source=recording)
     launch = open_viewer(recording)
     output.document({"started": launch.started, "message": launch.message})
     if launch.started:

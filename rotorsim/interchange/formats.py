@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from ..errors import TableError
+from ..file_kinds import SUFFIXES, FileKind, kind_of, sentence
 from ..table import CoefficientTable
 from . import matlab, ross, text
 from .curves import Curve, curves
@@ -21,6 +22,12 @@ FORMATS = {
 """Names of the formats, and how their files end."""
 _SUFFIXES = (".nc", ".csv", ".json")
 _LOAD_FRAME_SUFFIXES = (".nc", ".csv")
+_KINDS = {
+    ".nc": (FileKind.NETCDF,),
+    ".csv": (FileKind.CSV,),
+    ".toml": (FileKind.ROSS,),
+    ".json": (FileKind.ROSS, FileKind.JSON),
+}
 _NO_USE = "has no use: this format is in the load frame, only that of ROSS is not"
 _ONE_CURVE: dict[str, Callable[[Curve, Path], Path]] = {"ross": ross.write, "txt": text.write}
 
@@ -111,6 +118,7 @@ def read_table(path: str | Path, *, load_direction: float | None = None) -> Coef
         raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)
     if source.is_dir():
         raise TableError("is a directory; give a table", source=source)
+    _check_kind(source, suffix)
     if load_direction is not None and suffix in _LOAD_FRAME_SUFFIXES:
         raise TableError(_NO_USE, source=source, key="load_direction", value=load_direction)
     if suffix == ".nc":
@@ -122,3 +130,14 @@ def read_table(path: str | Path, *, load_direction: float | None = None) -> Coef
     raise TableError(
         "a table's name ends in .nc (netCDF), .csv, or .toml or .json (ROSS)", source=source
     )
+
+
+def _check_kind(source: Path, suffix: str) -> None:
+    """Refuse a file whose contents, or name, are not those of a table."""
+    kind = kind_of(source)
+    if kind is None or kind in _KINDS.get(suffix, ()):
+        return
+    renamed = (
+        "" if suffix == SUFFIXES.get(kind, suffix) else f"; its name must end in {SUFFIXES[kind]}"
+    )
+    raise TableError(f"{sentence(kind)}{renamed}; here a table is needed", source=source)

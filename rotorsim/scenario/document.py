@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import ScenarioError
+from ..file_kinds import HEAD, FileKind, recognise, sentence
 from ..shipped import shipped_scenarios
 
 MAX_BYTES = 1_000_000
@@ -20,7 +21,7 @@ def read_text(path: str | Path) -> str:
     Raises
     ------
     ScenarioError
-        No such file, not a file, too large, not UTF-8, not readable.
+        No such file, not a file, a file of another kind, too large, not UTF-8, not readable.
     """
     path = Path(path)
     try:
@@ -34,6 +35,9 @@ def read_text(path: str | Path) -> str:
         if isinstance(error, ScenarioError):
             raise
         raise ScenarioError(f"cannot be read: {error}", source=path) from None
+    kind = recognise(data[:HEAD], path.suffix.lower())
+    if kind not in (None, FileKind.SCENARIO):
+        raise ScenarioError(f"{sentence(kind)}; here a scenario is needed", source=path)
     if len(data) > MAX_BYTES:
         raise ScenarioError(f"is larger than {MAX_BYTES} bytes: no scenario file", source=path)
     try:

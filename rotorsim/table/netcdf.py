@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..atomic import replacing
 from ..errors import TableError
+from ..file_kinds import FileKind, kind_of, sentence
 from .variables import TABLE_VERSION
 
 if TYPE_CHECKING:
@@ -55,6 +56,10 @@ def read(path: str | Path) -> xr.Dataset:
     source = Path(path)
     if not source.is_file():
         raise TableError("no such file; `rotorsim table SCENARIO` makes one", source=source)
+    kind = kind_of(source)
+    if kind not in (None, FileKind.NETCDF):
+        reader = "; CoefficientTable.from_csv reads one" if kind is FileKind.CSV else ""
+        raise TableError(f"{sentence(kind)}{reader}; here a netCDF table is needed", source=source)
     try:
         with xr.open_dataset(source, engine="h5netcdf") as opened:
             dataset = opened.load()

@@ -1,0 +1,171 @@
+"""What a file is, by its first bytes and its name, and which command takes it.
+
+Nothing here decides what can be read: the readers do, and ask here only for what to say of a file
+that is not theirs.
+"""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+from pathlib import Path
+
+HEAD = 65_536
+"""Bytes of a file that are looked at."""
+
+
+class FileKind(StrEnum):
+    """Kinds of files that users of rotorsim have at hand."""
+
+    SCENARIO = "scenario"
+    NETCDF = "netCDF"
+    CSV = "CSV"
+    ROSS = "ROSS"
+    COLUMNS = "columns"
+    RECORDING = "recording"
+    NUMPY = "NumPy"
+    MATLAB = "MATLAB"
+    JOURNAL = "journal"
+    PAGE = "page"
+    PICTURE = "picture"
+    SPREADSHEET = "spreadsheet"
+    JSON = "JSON"
+
+
+_TAKES_TABLES = "`rotorsim stability`, `rotorsim export` and `rotorsim orbit SCENARIO --table` take"
+_SENTENCES = {
+    FileKind.SCENARIO: (
+        "is a scenario; `rotorsim table SCENARIO` makes a coefficient table from it, "
+        "`rotorsim check`, `run`, `stability` and others take it as it is"
+    ),
+    FileKind.NETCDF: (
+        "is a netCDF file (.nc), as coefficient tables are; " + _TAKES_TABLES + " such a table"
+    ),
+    FileKind.CSV: "is a CSV file (.csv); " + _TAKES_TABLES + " coefficients in CSV",
+    FileKind.ROSS: "is a bearing that ROSS saved; " + _TAKES_TABLES + " it",
+    FileKind.COLUMNS: (
+        "is plain text (.txt), which is written for other programs and not read; give the table "
+        "itself (.nc), or columns of coefficients as .csv"
+    ),
+    FileKind.RECORDING: "is a recording (.rrd); `rotorsim view` takes it",
+    FileKind.NUMPY: (
+        "is a NumPy file (.npz); the matrices of a rotor in one go with "
+        "`rotorsim stability TABLE --rotor FILE`"
+    ),
+    FileKind.MATLAB: (
+        "is a MATLAB file (.mat); the matrices of a rotor in one go with "
+        "`rotorsim stability TABLE --rotor FILE`; of a table that was exported, give the original"
+    ),
+    FileKind.JOURNAL: (
+        "is the journal of a sweep that was interrupted; `rotorsim table SCENARIO` resumes it"
+    ),
+    FileKind.PAGE: "is a web page (.html) such as a report; a browser opens it, no command does",
+    FileKind.PICTURE: "is a picture or a document, which no command takes",
+    FileKind.SPREADSHEET: "is a spreadsheet; save its sheet as CSV (UTF-8, separated by commas)",
+    FileKind.JSON: (
+        "is a JSON file; the only ones read are bearings saved by ROSS; " + _TAKES_TABLES + " them"
+    ),
+}  # fmt: skip
+_BY_FIRST_BYTES = (
+    (b"\x89HDF\r\n\x1a\n", FileKind.NETCDF),
+    (b"CDF\x01", FileKind.NETCDF),
+    (b"CDF\x02", FileKind.NETCDF),
+    (b"RRF", FileKind.RECORDING),
+    (b'{"rotorsim_journal"', FileKind.JOURNAL),
+    (b"MATLAB 5.0 MAT-file", FileKind.MATLAB),
+    (b"\x93NUMPY", FileKind.NUMPY),
+    (b"\x89PNG", FileKind.PICTURE),
+    (b"GIF8", FileKind.PICTURE),
+    (b"%PDF", FileKind.PICTURE),
+    (b"\xd0\xcf\x11\xe0", FileKind.SPREADSHEET),
+)
+_BY_SUFFIX = {
+    ".nc": FileKind.NETCDF,
+    ".csv": FileKind.CSV,
+    ".txt": FileKind.COLUMNS,
+    ".rrd": FileKind.RECORDING,
+    ".npz": FileKind.NUMPY,
+    ".npy": FileKind.NUMPY,
+    ".mat": FileKind.MATLAB,
+    ".journal": FileKind.JOURNAL,
+    ".html": FileKind.PAGE,
+    ".htm": FileKind.PAGE,
+    ".png": FileKind.PICTURE,
+    ".svg": FileKind.PICTURE,
+    ".gif": FileKind.PICTURE,
+    ".mp4": FileKind.PICTURE,
+    ".pdf": FileKind.PICTURE,
+    ".json": FileKind.JSON,
+}
+_SCENARIO_TABLE = re.compile(
+    rb"^[ \t]*\[+(bearing|lubricant|operating)\b|^[ \t]*(bearing|lubricant|operating)\.", re.M
+)
+_COEFFICIENT = re.compile(rb"^[ \t]*kxx[ \t]*=", re.M)
+
+
+def kind_of(path: str | Path) -> FileKind | None:
+    """Kind of the file at `path`: by its contents, else by its name; None where neither tells."""
+    try:
+        with Path(path).open("rb") as file:
+            head = file.read(HEAD)
+    except (OSError, ValueError):
+        return None
+    return recognise(head, Path(path).suffix.lower())
+
+
+def recognise(head: bytes, suffix: str = "") -> FileKind | None:
+    """Kind of a file that begins with `head` and whose name ends in `suffix`.
+
+    Examples
+    --------
+    >>> recognise(b"RRF2...", ".toml").value
+    'recording'
+    >>> recognise(b"anything", ".toml") is None
+    True
+    """
+    for first, kind in _BY_FIRST_BYTES:
+        if head.startswith(first):
+            return kind
+    if head.startswith(b"PK\x03\x04"):
+        return FileKind.NUMPY if suffix == ".npz" else FileKind.SPREADSHEET
+    text = head.removeprefix(b"\xef\xbb\xbf").lstrip()
+    if text[:15].lower().startswith((b"<!doctype html", b"<html")):
+        return FileKind.PAGE
+    if text[:200].startswith((b"<?xml", b"<svg")):
+        return FileKind.PICTURE
+    if _SCENARIO_TABLE.search(text):
+        return FileKind.SCENARIO
+    if _COEFFICIENT.search(text) or (text.startswith(b"{") and b'"kxx"' in text):
+        return FileKind.ROSS
+    if _is_csv_of_coefficients(text):
+        return FileKind.CSV
+    return _BY_SUFFIX.get(suffix)
+
+
+def _is_csv_of_coefficients(text: bytes) -> bool:
+    """Whether the first line that is no comment names the columns of a coefficient table."""
+    for line in text.splitlines():
+        if line.strip() and not line.lstrip().startswith(b"#"):
+            lower = line.lower()
+            return b"kxx" in lower and b"cxx" in lower and (b"," in lower or b";" in lower)
+    return False
+
+
+SUFFIXES = {
+    FileKind.SCENARIO: ".toml",
+    FileKind.NETCDF: ".nc",
+    FileKind.CSV: ".csv",
+    FileKind.ROSS: ".toml",
+}
+"""How the names of files must end that are taken by name."""
+
+
+def sentence(kind: FileKind | None) -> str:
+    """Say what a file of that kind is and which command takes it; empty for None.
+
+    Examples
+    --------
+    >>> sentence(FileKind.RECORDING)
+    'is a recording (.rrd); `rotorsim view` takes it'
+    """
+    return "" if kind is None else _SENTENCES[kind]
