@@ -55,9 +55,14 @@ def _similar(path: Path) -> str:
     if not path.parent.is_dir():
         return f"; nor is there a directory {path.parent}"
     names = [entry.name for entry in path.parent.glob("*.toml") if entry.name != path.name]
-    close = difflib.get_close_matches(path.name, names, n=1, cutoff=0.5)
-    if close:
-        return f'; did you mean "{path.parent / close[0]}"?'
+    same = path.name.casefold()
+
+    def likeness(name: str) -> float:
+        return difflib.SequenceMatcher(None, same, name.casefold()).ratio()
+
+    nearest = max(sorted(names), key=likeness, default="")
+    if likeness(nearest) >= 0.5:
+        return f'; did you mean "{path.parent / nearest}"?'
     shipped = ", ".join(shipped_scenarios())
     return "" if path.suffix or not shipped else f"; the shipped scenarios are {shipped}"
 

@@ -33,6 +33,28 @@ _BY_TYPE = {
     "string_too_long": "must be at most {max_length} characters",
 }
 
+_HALF = "half of the diametral one"
+_CLEARANCE = f"write radial_clearance, {_HALF}"
+_RADIUS = "write journal_radius, half of the diameter"
+_LENGTH = "write length, the bearing's own, with its unit"
+_OIL = "the oil's table is [lubricant]"
+_COUNT = "write count, the number of values, in place of a step"
+_SAID_OTHERWISE = {
+    "bearing": {
+        **dict.fromkeys(("journal_diameter", "shaft_diameter", "diameter", "bore"), _RADIUS),
+        **dict.fromkeys(
+            ("diametral_clearance", "diametrical_clearance", "diameter_clearance"), _CLEARANCE
+        ),
+        "clearance": f"write radial_clearance ({_HALF})",
+        **dict.fromkeys(("length_to_diameter", "length_diameter_ratio", "width"), _LENGTH),
+    },
+    "": dict.fromkeys(("oil", "lubrication", "lube", "fluid"), _OIL),
+    "operating": {"step": "write speed = { start, stop, count }"},
+    "operating.speed": {"step": _COUNT},
+    "stability.mass": {"step": _COUNT},
+}
+"""What users call entries, by table, and what the format calls them."""
+
 
 class Finding(NamedTuple):
     """One thing wrong."""
@@ -170,6 +192,9 @@ def _unknown_key(path: tuple[str | int, ...]) -> str:
     *parents, last = _names(path)
     known = _keys_at(tuple(parents))
     where = f"[{'.'.join(parents)}]" if parents else _WHERE_OUTERMOST
+    said = _SAID_OTHERWISE.get(".".join(parents), {}).get(last)
+    if said is not None:
+        return f"is not a key of {where}; {said} (known: {', '.join(known)})"
     elsewhere = [table for table in _tables() if table and last in _keys_at(table)]
     advice = f"; it belongs into [{'.'.join(elsewhere[0])}]" if elsewhere else nearest(last, known)
     return f"is not a key of {where}{advice} (known: {', '.join(known)})"

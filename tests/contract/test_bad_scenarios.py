@@ -120,6 +120,22 @@ BAD = [
     ("length =", "lenght =", "bearing.lenght", ["80 mm", '"length"']),
     ("[operating]", "[operatin]", "operatin", ['"operating"']),
     (CLEARANCE, CLEARANCE + '\nload = "1 kN"', "bearing.load", ["1 kN", "[operating]"]),
+    ("journal_radius", "journal_diameter", "bearing.journal_diameter", ["journal_radius, half of"]),
+    ("journal_radius", "diameter", "bearing.diameter", ["journal_radius, half of"]),
+    (
+        "radial_clearance",
+        "diametral_clearance",
+        "bearing.diametral_clearance",
+        ["100 um", "radial_clearance, half of"],
+    ),
+    (
+        'length = "80 mm"',
+        "length_to_diameter = 0.8",
+        "bearing.length_to_diameter",
+        ["write length"],
+    ),
+    ("[lubricant]", "[oil]", "oil", ["[lubricant]"]),
+    ("[lubricant]", "[lubrication]", "lubrication", ["[lubricant]"]),
     ("cross_film", "crossfilm", "film.mesh.crossfilm", ["12", '"cross_film"']),
     ('"thd"', '"tdh"', "thermal.models[1]", ["tdh", '"thd"']),
     ("[film]", '[film]\ncavitation = "reynold"', "film.cavitation", ["reynold", '"jfo"']),
@@ -156,7 +172,7 @@ BAD = [
     ("count = 30", "count = 1000001", "operating.speed.count", ["1000001", "100000"]),
     (", count = 30", "", "operating.speed.count", ["missing", "count = 30"]),
     ('stop = "15000 rpm"', 'stop = "100 rpm"', "operating.speed.stop", ["100 rpm", "above start"]),
-    ("count = 30", "count = 30, step = 5", "operating.speed.step", ["5", "known"]),
+    ("count = 30", "count = 30, step = 5", "operating.speed.step", ["5", "; write count"]),
     # the oil
     (VISCOSITY, "", "lubricant", ["exactly one", "iso_vg = 32"]),
     (VISCOSITY, VISCOSITY + "\niso_vg = 32", "lubricant.iso_vg", ["32", "exactly one"]),
@@ -332,6 +348,14 @@ def test_unit_texts_that_could_blow_up(tmp_path: Path, entry: str) -> None:
 def test_missing_file_suggests_a_neighbour(tmp_path: Path) -> None:
     write(tmp_path, "test", "test")
     assert 'case.toml"' in refused(tmp_path / "cse.toml")
+
+
+def test_a_neighbour_that_differs_in_case_alone_is_suggested_first(tmp_path: Path) -> None:
+    for name in ("pump.toml", "pumpA.toml", "pumpb.toml", "pumpas.toml"):
+        (tmp_path / name).write_text(GOOD, encoding="utf-8")
+    if (tmp_path / "pumpa.toml").exists():
+        pytest.skip("case is nothing to this file system")
+    assert f'did you mean "{tmp_path / "pumpA.toml"}"' in refused(tmp_path / "pumpa.toml")
 
 
 def test_missing_folder(tmp_path: Path) -> None:
