@@ -10,6 +10,7 @@ from typing import Any
 from ..errors import ScenarioError
 from ..file_kinds import HEAD, FileKind, recognise, sentence
 from ..shipped import shipped_scenarios
+from .toml_advice import advice
 
 MAX_BYTES = 1_000_000
 MAX_NESTING = 50
@@ -85,7 +86,7 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         raise ScenarioError("is nested too deeply to be a scenario", source=source) from None
     except ValueError as error:  # TOMLDecodeError, or a number of too many digits
         raise ScenarioError(
-            f'is not valid TOML: {error}; every entry reads like length = "80 mm"', source=source
+            f"is not valid TOML: {error}; {advice(text, str(error))}", source=source
         ) from None
 
 

@@ -333,6 +333,41 @@ def test_bad_file(tmp_path: Path, content: bytes, said: str) -> None:
     assert len(message) < 4000
 
 
+GROOVE = '[bearing.groove]\ncenter = "90 deg"\n'
+NOT_TOML = [
+    (GROOVE + GROOVE, "[[bearing.groove]], with double brackets"),
+    (GROOVE + GROOVE.replace("[bearing.groove]", "[[bearing.groove]]"), "the first one as well"),
+    ("[bearing]\n[bearing]\n", "[bearing] may stand once only"),
+    ("a = 1\na = 2\n", "a may stand once only"),
+    ("preload = 0,5\n", "with a point: 0.5"),
+    ("length = 80,5 mm # long\n", 'with a point: "80.5 mm", in quotes'),
+    ("length = 80 mm\n", 'in quotes: "80 mm"'),
+    ('length = 80 mm"\n', 'in quotes: "80 mm"'),
+    ("speed = { start = 500 rpm, count = 3 }\n", 'in quotes: "500 rpm"'),
+    ('length = "80 mm\nload = 1\n', "closing quote is missing"),
+    ("length = '80 mm", "closing quote is missing"),
+    ("length = “80 mm”\n", "plain quotes"),
+    ("steady_only = True\n", "true or false"),
+    ("profile = elliptical\n", 'in quotes: "elliptical"'),
+    ("preload =\n", "a value is missing"),
+    ("preload = .5\n", "0.5"),
+    ('length: "80 mm"\n', "equals sign"),
+    ("[bearing\n", "close the bracket"),
+    ('models = ["thd" "isothermal"]\n', "commas between"),
+    ('speed = { start = "1 rpm",\n stop = "2 rpm" }\n', "braces"),
+    ("a = 1 // one\n", "comments begin with #"),
+]
+
+
+@pytest.mark.parametrize(("content", "said"), NOT_TOML, ids=range(len(NOT_TOML)))
+def test_what_is_not_toml_gets_advice_that_fits(tmp_path: Path, content: str, said: str) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text(content, encoding="utf-8")
+    message = refused(path)
+    assert ": is not valid TOML: " in message
+    assert said in message.partition("; ")[2]
+
+
 def test_long_list_is_refused_quickly(tmp_path: Path) -> None:
     entries = ", ".join(['"1 foo"'] * 60_000)
     assert "10000 entries" in refused(write(tmp_path, SPEED, f"[{entries}]"))
