@@ -215,6 +215,7 @@ def study_document(study: ToleranceStudy) -> dict[str, Any]:
         "most_important_input": study.most_important,
         "rank_correlation": dict(study.importance),
         "share_of_variance": dict(study.share_of_variance),
+        "explained_variance": study.explained_variance,
         "inputs": dict(study.samples.inputs),
         "outputs": dict(outputs),
     }
@@ -238,16 +239,36 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
         first = None if nominal is None else nominal * factor
         cells = ["-" if v is None or not math.isfinite(v) else _short(v) for v in (first, *found)]
         table.add_row(text, *cells)
-    inputs = grid("What matters (for the decay rate)", "input", "rank correlation", "of variance")
+    inputs = grid(
+        "What matters (for the decay rate)", "input", "rank correlation", "share of variance"
+    )
     for name, value in study.importance.items():
         share = study.share_of_variance[name]
-        inputs.add_row(name.replace("_", " "), f"{value:+.2f}", f"{100.0 * share:.0f} %")
+        said = f"{100.0 * share:.0f} %" if math.isfinite(share) else "-"
+        inputs.add_row(name.replace("_", " "), f"{value:+.2f}", said)
     p, error = 100.0 * study.probability_of_instability, 100.0 * study.standard_error
     outputs = study.samples.outputs
     stable = 100.0 * float(np.nanmean(outputs["stable_throughout"]))
+    unstable = 100.0 * float(np.nanmean(outputs["unstable_throughout"]))
     lines = [
         f"probability of instability at {study.operating_speed * RPM:.0f} rpm: {p:.1f} % "
-        f"(+- {error:.1f} %)",
-        f"no threshold within the speeds: {stable:.1f} % of the samples are stable throughout",
+        f"(+- {error:.1f} %)"
     ]
-    return [table, "\n".join(lines[: 2 if stable > 0.0 else 1]), inputs]
+    lines += [
+        f"no threshold within the speeds: {share:.1f} % of the samples are {word} throughout"
+        for share, word in ((stable, "stable"), (unstable, "unstable"))
+        if share > 0.0
+    ]
+    failed = len(study.samples.failures)
+    lines += [f"left out everywhere: {failed} samples whose film did not converge"] * bool(failed)
+    return [table, "\n".join(lines), inputs, _share_note(study.explained_variance)]
+
+
+def _share_note(explained: float) -> str:
+    """What the shares of variance are."""
+    if not math.isfinite(explained):
+        return "share of variance: too few samples to tell, or nothing varies"
+    return (
+        "share of variance: of this input alone (first-order Sobol' index), by a regression that\n"
+        f"explains {100.0 * explained:.1f} % (adjusted R2); the shares need not add up to 100 %"
+    )

@@ -106,14 +106,16 @@ def tolerance_figure(study: ToleranceStudy, title: str = "") -> Figure:
 
     outputs = study.samples.outputs
     mass = study.rotor.mass if isinstance(study.rotor, RigidShaft) else None
+    failed = [sample for sample, _ in study.samples.failures]
     return tolerance_histograms(
-        outputs["threshold_speed"],
-        outputs["critical_mass"],
+        np.delete(outputs["threshold_speed"], failed),
+        np.delete(outputs["critical_mass"], failed),
         study.importance,
         study.operating_speed,
         mass,
         (study.nominal["threshold_speed"], study.nominal["critical_mass"]),
         title,
+        len(failed),
     )
 
 

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..model import Case, LoadTarget, MeshSize
 from ..stability.over_speed import RotorOnFilm
-from ..stability.uncertainty import Propagation, Tolerance, propagate
+from ..stability.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..table import Coefficients
 from .film_axes import changed, with_mesh
 from .rotors import rotor_on_film
+from .wording import RPM
 
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
@@ -78,7 +79,7 @@ class FilmThreshold:
 
         Raises
         ------
-        ArithmeticError
+        SampleError
             The film did not converge.
         """
         from ..stability.modes import find_thresholds
@@ -113,7 +114,11 @@ class FilmThreshold:
         for speed in speeds:
             point, warm = solve_case(case, speed, initial=warm)
             if not point.converged:
-                raise ArithmeticError(f"{speed:.6g} rad/s: {point.status.value}, {point.message}")
+                why = f": {point.message}" if point.message else ""
+                raise SampleError(
+                    f"the film at {speed * RPM:.0f} rpm did not converge "
+                    f"({point.status.value.replace('_', ' ')}{why})"
+                )
             points[speed] = point
         return points
 
@@ -157,7 +162,10 @@ class ToleranceStudy:
     importance : mapping of str to float
         Rank correlation of each input with the decay rate at the operating speed, strongest first.
     share_of_variance : mapping of str to float
-        First-order Sobol' index for the same output.
+        First-order Sobol' index for the same output, by regression (see
+        `rotorsim.stability.Propagation.first_order_index`); they need not add up to 1.
+    explained_variance : float
+        Adjusted R^2 of that regression.
     """
 
     thermal_model: str
@@ -171,6 +179,7 @@ class ToleranceStudy:
     standard_error: float
     importance: Mapping[str, float]
     share_of_variance: Mapping[str, float]
+    explained_variance: float
 
     @property
     def most_important(self) -> str:
@@ -233,7 +242,10 @@ def study_tolerances(
     speed = operating_speed or _operating_speed(scenario)
     function = FilmThreshold(case, rotor, speed, _search_speeds(scenario, speed))
     tolerances = tolerances_of(case, settings)
-    nominal = function({name: t.nominal for name, t in tolerances.items()})
+    try:
+        nominal = function({name: t.nominal for name, t in tolerances.items()})
+    except SampleError as error:
+        raise InputError(f"without any deviation {error}", key="tolerances") from error
     samples = propagate(
         function, tolerances, settings.samples, seed=settings.seed,
         mapper=_mapper(executor, workers, progress),
@@ -253,6 +265,7 @@ def study_tolerances(
         standard_error=error,
         importance=samples.importance("decay_rate"),
         share_of_variance=samples.first_order_index("decay_rate"),
+        explained_variance=samples.explained_variance("decay_rate"),
     )
 
 

@@ -27,6 +27,7 @@ def tolerance_histograms(
     mass: float | None = None,
     nominal: tuple[float | None, float | None] = (None, None),
     title: str = "",
+    failed: int = 0,
 ) -> Figure:
     """Histograms of threshold speed and critical mass, and the inputs' importance.
 
@@ -42,14 +43,20 @@ def tolerance_histograms(
         Marked [rad/s], [kg]; without a mass, a flexible rotor's is not.
     nominal : (threshold speed, critical mass)
         Without deviations, marked where not None.
+    failed : int
+        Further samples, without any result: they are in none of the arrays, and said.
     """
-    figure, axes = new_axes(1, 3, (9.6, 3.4), title)
+    if failed:
+        title += f"\n{threshold_speed.size} samples; {failed} more did not converge"
+    figure, axes = new_axes(1, 3, (9.6, 3.4), title.strip())
     speed, mass_axes, bars = axes[0]
-    _histogram(speed, threshold_speed * RPM, operating_speed * RPM, "operating speed",
-               None if nominal[0] is None else nominal[0] * RPM)  # fmt: skip
-    speed.set(xlabel="threshold speed [rpm]", ylabel="share of samples [%]")
-    _histogram(mass_axes, critical_mass, mass, "rotor mass", nominal[1])
-    mass_axes.set(xlabel="critical mass at operating speed [kg]")
+    at = None if nominal[0] is None else nominal[0] * RPM
+    mark = (operating_speed * RPM, "operating speed")
+    _histogram(speed, threshold_speed * RPM, "threshold speed [rpm]", at, mark)
+    _histogram(
+        mass_axes, critical_mass, "critical mass at operating speed [kg]", nominal[1],
+        None if mass is None else (mass, "rotor mass"),
+    )  # fmt: skip
     names = list(importance)[::-1]
     values = np.array([importance[name] for name in names])
     bars.barh(
@@ -66,20 +73,30 @@ def tolerance_histograms(
 
 
 def _histogram(
-    ax: Axes, values: Array, mark: float | None, name: str, nominal: float | None
+    ax: Axes, values: Array, label: str, nominal: float | None, mark: tuple[float, str] | None
 ) -> None:
     known = values[np.isfinite(values)]
-    if known.size:
-        edges = np.histogram_bin_edges(known, "auto")
-        share = np.full(known.size, 100.0 / values.size)
-        ax.hist(known, edges.tolist(), weights=share, color="#c9d8e4", edgecolor="k", linewidth=0.7)
+    name = label.split(" at ")[0].split(" [")[0]
+    if not known.size:
+        # An axis without a value would show numbers that nobody computed.
+        ax.set_axis_off()
+        where = "\nwithin the speeds looked at" if "speed [" in label else ""
+        ax.text(
+            0.5, 0.5, f"no sample has a {name}{where}", transform=ax.transAxes, ha="center",
+            va="center",
+        )  # fmt: skip
+        return
+    edges = np.histogram_bin_edges(known, "auto")
+    share = np.full(known.size, 100.0 / values.size)
+    ax.hist(known, edges.tolist(), weights=share, color="#c9d8e4", edgecolor="k", linewidth=0.7)
     missing = values.size - known.size
     if missing:
         ax.set_title(f"{100.0 * missing / values.size:.3g} % of samples have none")
     if mark is not None:
-        ax.axvline(mark, color="#8c1d2f", linewidth=1.8, label=name)
+        ax.axvline(mark[0], color="#8c1d2f", linewidth=1.8, label=mark[1])
     if nominal is not None:
         ax.axvline(nominal, color="k", linewidth=1.3, linestyle="--", label="nominal")
     ax.margins(y=0.3)
+    ax.set(xlabel=label, ylabel="share of samples [%]")
     if mark is not None or nominal is not None:
         ax.legend(loc="upper right")

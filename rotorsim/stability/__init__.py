@@ -64,6 +64,7 @@ if TYPE_CHECKING:
     )
     from .uncertainty import (
         Propagation,
+        SampleError,
         Tolerance,
         propagate,
         sample_inputs,
@@ -115,6 +116,7 @@ _HOME = {
     "rotor_state_space": "statespace",
     "state_space": "statespace",
     "Propagation": "uncertainty",
+    "SampleError": "uncertainty",
     "Tolerance": "uncertainty",
     "propagate": "uncertainty",
     "sample_inputs": "uncertainty",
@@ -135,6 +137,7 @@ __all__ = [
     "Propagation",
     "RigidShaft",
     "RotorOnFilm",
+    "SampleError",
     "StabilityMap",
     "StateFeedback",
     "ThresholdSpeed",

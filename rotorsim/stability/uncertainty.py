@@ -10,10 +10,14 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..errors import InputError
+from ..errors import InputError, RotorsimError
 
 Array = NDArray[np.float64]
 Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+
+
+class SampleError(RotorsimError):
+    """The function has no result for a sample; the message says why."""
 
 
 @dataclass(frozen=True)
@@ -107,34 +111,66 @@ class Propagation:
             result[name] = float(np.corrcoef(rankdata(column[good]), rank)[0, 1])
         return dict(sorted(result.items(), key=lambda item: -abs(item[1])))
 
-    def first_order_index(self, output: str, bins: int = 16) -> dict[str, float]:
+    def first_order_index(self, output: str) -> dict[str, float]:
         """Share of an output's variance that each input explains alone, largest first.
+
+        Estimates of first-order Sobol' indices Var(E[Y|X_i])/Var(Y). They add up to
+        `explained_variance` about, not to 1: what is left are interactions of inputs and bends
+        that a quadratic does not follow.
 
         Notes
         -----
-        First-order Sobol' index Var(E[Y|X_i])/Var(Y), by the correlation ratio over equally filled
-        bins of X_i, less what the finite number of samples in a bin feigns.
+        Least squares on a sum of one quadratic for each input (straight lines where there are fewer
+        than three samples for each coefficient): a few coefficients are known well from some
+        dozens of samples. What the scatter feigns is subtracted from each share. NaN with fewer
+        samples than coefficients.
         """
+        return self._additive_fit(output)[0]
+
+    def explained_variance(self, output: str) -> float:
+        """Adjusted R^2 of the regression behind `first_order_index`; NaN where there is none."""
+        return self._additive_fit(output)[1]
+
+    def _additive_fit(self, output: str) -> tuple[dict[str, float], float]:
+        """First-order shares, largest first, and the adjusted R^2."""
         values = self._output(output)
         good = np.isfinite(values)
-        y = values[good]
-        result = dict.fromkeys(self.inputs, 0.0)
-        bins = min(bins, y.size // 4)
-        if bins < 2 or np.ptp(y) == 0.0:
-            return result
-        total = float(np.sum((y - y.mean()) ** 2))
-        for name, column in self.inputs.items():
-            parts = np.array_split(y[np.argsort(column[good], kind="stable")], bins)
-            within = sum(float(np.sum((p - p.mean()) ** 2)) for p in parts)
-            ratio = 1.0 - (within / (y.size - bins)) / (total / (y.size - 1))
-            result[name] = max(0.0, ratio)
-        return dict(sorted(result.items(), key=lambda item: -item[1]))
+        y = values[good] - values[good].mean() if good.any() else values[good]
+        size = y.size
+        if size < 3 or np.ptp(y) == 0.0:
+            return dict.fromkeys(self.inputs, 0.0 if size >= 3 else math.nan), math.nan
+        powers = 2 if size >= 3 * (2 * len(self.inputs) + 1) else 1
+        columns = {name: _features(column[good], powers) for name, column in self.inputs.items()}
+        x = np.hstack(list(columns.values()))
+        free = size - x.shape[1] - 1
+        if free < 1:
+            return dict.fromkeys(self.inputs, math.nan), math.nan
+        inverse = np.linalg.pinv(x.T @ x)
+        coefficients = inverse @ (x.T @ y)
+        scatter = float(np.sum((y - x @ coefficients) ** 2)) / free
+        variance = float(np.sum(y**2)) / (size - 1)
+        shares = {}
+        for number, (name, part) in enumerate(columns.items()):
+            place = slice(number * powers, (number + 1) * powers)
+            explained = float(np.sum((part @ coefficients[place]) ** 2))
+            feigned = scatter * float(np.trace(inverse[place, place] @ (part.T @ part)))
+            shares[name] = max(0.0, (explained - feigned) / (size - 1) / variance)
+        ordered = dict(sorted(shares.items(), key=lambda item: -item[1]))
+        return ordered, max(0.0, 1.0 - scatter / variance)
 
     def _output(self, name: str) -> Array:
         if name not in self.outputs:
             known = ", ".join(self.outputs) or "none"
             raise InputError(f"no such output; there are {known}", key="output", value=name)
         return self.outputs[name]
+
+
+def _features(column: Array, powers: int) -> Array:
+    """Powers of the standardised input, without their means, (n, powers)."""
+    z = column - column.mean()
+    z = z / (z.std() or 1.0)
+    x = z[:, None] ** np.arange(1, powers + 1)
+    return x - x.mean(axis=0)
 
 
 def sample_inputs(
@@ -221,5 +257,7 @@ class _Guarded:
     def __call__(self, sample: dict[str, float]) -> Mapping[str, float | None] | str:
         try:
             return self.function(sample)
+        except SampleError as error:
+            return str(error)
         except Exception as error:
             return f"{type(error).__name__}: {error}"

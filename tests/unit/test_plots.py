@@ -208,6 +208,21 @@ def test_root_locus_says_where_it_crosses():
     assert axes.get_ylim()[0] < 0.0 < 400.0 < axes.get_ylim()[1]
 
 
+def test_tolerance_panels_without_a_value_say_so_and_failed_samples_are_apart():
+    nothing, mass = np.full(60, np.nan), np.linspace(200.0, 300.0, 60)
+    figure = plots.tolerance_histograms(
+        nothing, mass, {"load": 0.4}, 1050.0, 310.0, title="pump", failed=4
+    )
+    first, second, _ = figure.axes
+    assert not first.axison
+    assert [text.get_text().split("\n")[0] for text in first.texts] == [
+        "no sample has a threshold speed"
+    ]
+    assert second.axison
+    assert second.get_title() == ""
+    assert figure.get_suptitle() == "pump\n60 samples; 4 more did not converge"
+
+
 def test_tolerance_histograms_show_shares_and_what_is_missing():
     rng = np.random.default_rng(1)
     speeds = 1000.0 + 50.0 * rng.standard_normal(256)
