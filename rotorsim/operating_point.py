@@ -68,6 +68,11 @@ class HeatBalance:
         rest = self.dissipation - self.enthalpy_out - self.to_bush - self.to_shaft
         return rest / self.dissipation if self.dissipation else 0.0
 
+    @property
+    def wall_share(self) -> float:
+        """(bush + shaft)/dissipation [-]: what the oil does not carry off."""
+        return (self.to_bush + self.to_shaft) / self.dissipation if self.dissipation else 0.0
+
 
 @dataclass(frozen=True)
 class OperatingPoint:
@@ -118,6 +123,10 @@ class OperatingPoint:
         Where the model leaves its range.
     heat_balance : HeatBalance or None
         THD only.
+    outlet_temperature : float or None
+        Mean of the oil that leaves at both ends [K]: supply temperature plus the heat that the oil
+        carries off over rho c_p times the side flow. THD with ``inlet = mixing`` only: otherwise
+        warm oil also leaves where fresh oil replaces it.
     fields : FilmFields or None
     """
 
@@ -148,6 +157,7 @@ class OperatingPoint:
     residual: float
     warnings: tuple[str, ...] = ()
     heat_balance: HeatBalance | None = None
+    outlet_temperature: float | None = None
     fields: FilmFields | None = field(default=None, repr=False)
 
     @property

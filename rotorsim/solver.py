@@ -18,7 +18,7 @@ from .film.heat import heat_totals, wall_temperatures
 from .film.linearized import linearize
 from .film.losses import friction_force, peak, side_flow
 from .film.solution import FilmSolution, WarmStart, solve_film
-from .model import Case, LoadTarget, ThermalModel, ViscosityResponse
+from .model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
 from .operating_point import FilmFields, HeatBalance, OperatingPoint
 from .records import failed_point
 from .stability.whirl import rigid_threshold
@@ -181,6 +181,7 @@ def operating_point(
     elif not finite and status in _WITH_NUMBERS:
         status, message = SolveStatus.FAILED, message or "the solution is not finite"
     mean_viscosity = float(case.lubricant.viscosity(mean)) if math.isfinite(mean) else None
+    heat = _heat_balance(solution)
     return OperatingPoint(
         status=status,
         message=message,
@@ -199,9 +200,10 @@ def operating_point(
         residual=solution.residual,
         warnings=regime_warnings(
             case, speed, min_film_thickness=thinnest, max_temperature=hottest,
-            mean_viscosity=mean_viscosity,
+            mean_viscosity=mean_viscosity, heat_balance=heat,
         ),
-        heat_balance=_heat_balance(solution),
+        heat_balance=heat,
+        outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat),
         fields=_fields(solution, fraction) if keep_fields else None,
     )  # fmt: skip
 
@@ -266,6 +268,24 @@ def _heat_balance(solution: FilmSolution) -> HeatBalance | None:
         thermal.inlet_temperature, thermal.leaving_temperature,
     )  # fmt: skip
     return HeatBalance(totals.dissipation, totals.enthalpy_out, totals.to_bush, totals.to_shaft)
+
+
+def _outlet_temperature(case: Case, flow: float, heat: HeatBalance | None) -> float | None:
+    """Mean temperature of the oil that leaves at both ends [K]; None where it is not known.
+
+    All heat that the oil carries off leaves with the side flow only where the oil that comes round
+    mixes, whole, with what is supplied, and at one temperature.
+    """
+    thermal, oil = case.thermal, case.lubricant
+    mixed = thermal.inlet is InletModel.MIXING and thermal.hot_oil_carry_over == 1.0
+    kept = case.film.cavitation in (Cavitation.REYNOLDS, Cavitation.JFO)
+    single = all(
+        groove.supply_temperature in (None, thermal.supply_temperature)
+        for groove in case.bearing.grooves
+    )
+    if heat is None or not (mixed and kept and single and flow > 0.0):
+        return None
+    return thermal.supply_temperature + heat.enthalpy_out / (oil.density * oil.specific_heat * flow)
 
 
 def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:

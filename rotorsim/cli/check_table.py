@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..model import EccentricityTarget
+from ..model import EccentricityTarget, ThermalModel
 from ..pipeline.wording import RPM, ZERO_CELSIUS, number
 from .tables import grid
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[RenderableType]:
     """Inputs, derived numbers at the highest speed, and the amount of work."""
-    yield _inputs(scenario)
+    yield _inputs(scenario, cases)
     table = grid(
         f"At {scenario.speeds[-1] * RPM:.0f} rpm",
         "model",
@@ -42,36 +42,94 @@ def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[Re
             number(case["adiabatic_temperature_rise"], 3),
         )
     yield table
-    mesh = scenario.film.mesh
+    if any(_heated(case) for case in cases):
+        yield _warm_table(cases)
+    mesh, speeds, points = (
+        scenario.film.mesh,
+        len(scenario.speeds),
+        len(cases) * len(scenario.speeds),
+    )
     yield (
-        f"{len(cases)} cases x {len(scenario.speeds)} speeds = {len(cases) * len(scenario.speeds)} "
-        f"points on {mesh.circumferential} x {mesh.axial} x {mesh.cross_film} cells "
+        f"{_count(len(cases), 'case')} x {_count(speeds, 'speed')} = {_count(points, 'point')} "
+        f"on {mesh.circumferential} x {mesh.axial} x {mesh.cross_film} cells "
         "(around, along, across)"
     )
 
 
-def _inputs(scenario: Scenario) -> RenderableType:
-    bearing, oil = scenario.bearing, scenario.lubricant
-    supply = scenario.thermal.supply_temperature
-    target = scenario.target
-    clearances = ", ".join(number(value * 1e6) for value in scenario.radial_clearances)
+def _count(many: int, what: str) -> str:
+    return f"{many} {what}" if many == 1 else f"{many} {what}s"
+
+
+def _heated(case: dict[str, Any]) -> bool:
+    return case["thermal_model"] is ThermalModel.THD
+
+
+def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
+    """Flow numbers with the viscosity at supply temperature and in the estimated warm film."""
+    table = grid(
+        "Cold, and warm (estimated)", "c um", "T C", "mPa s", "Reynolds", "Taylor"
+    )
+    for case in filter(_heated, cases):
+        clearance = number(case["radial_clearance"] * 1e6)
+        table.add_row(
+            clearance,
+            number(case["supply_temperature"] - ZERO_CELSIUS, 3),
+            number(case["viscosity"] * 1e3),
+            number(case["reynolds_number"]),
+            number(case["taylor_number"]),
+        )
+        table.add_row(
+            "",
+            number(case["warm_temperature"] - ZERO_CELSIUS, 3),
+            number(case["warm_viscosity"] * 1e3),
+            number(case["warm_reynolds_number"]),
+            number(case["warm_taylor_number"]),
+        )
+    return table
+
+
+def _inputs(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> RenderableType:
     table = grid(scenario.title, "", "")
     table.columns[1].justify = "left"
-    table.add_row("journal radius", f"{number(bearing.journal_radius * 1e3)} mm")
-    table.add_row("length", f"{number(bearing.length * 1e3)} mm")
-    table.add_row("radial clearance", f"{clearances} um")
-    table.add_row("grooves, arcs", f"{len(bearing.grooves)}, {len(bearing.arcs)}")
-    viscosity = float(oil.viscosity(supply))
-    table.add_row("viscosity", f"{number(viscosity)} Pa s at {number(supply - ZERO_CELSIUS)} degC")
-    low, high = scenario.speeds[0] * RPM, scenario.speeds[-1] * RPM
-    table.add_row("speed", f"{low:.0f} to {high:.0f} rpm, {len(scenario.speeds)} of them")
-    if isinstance(target, EccentricityTarget):
-        table.add_row("eccentricity ratio", number(target.eccentricity_ratio))
-    else:
-        table.add_row("load", f"{number(target.load)} N")
-    models = ", ".join(model.value for model in scenario.thermal_models)
-    table.add_row("thermal models", models)
-    table.add_row("cavitation", scenario.film.cavitation.value)
-    if scenario.rotor is not None:
-        table.add_row("rotor mass per bearing", f"{number(scenario.rotor.mass)} kg")
+    for name, text in (*_drawing(scenario, cases), *_operation(scenario, cases[0])):
+        table.add_row(name, text)
     return table
+
+
+def _each(cases: Sequence[dict[str, Any]], key: str, factor: float) -> str:
+    """Values of the cases, each once."""
+    return ", ".join(dict.fromkeys(number(case[key] * factor) for case in cases))
+
+
+def _drawing(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[tuple[str, str]]:
+    bearing, one = scenario.bearing, cases[0]
+    yield "diameter", f"{number(one['diameter'] * 1e3)} mm"
+    ratio = number(one["length_to_diameter"], 3)
+    yield "length", f"{number(bearing.length * 1e3)} mm, L/D {ratio}"
+    yield "diametral clearance", f"{_each(cases, 'diametral_clearance', 1e3)} mm"
+    ratios = _each(cases, "clearance_ratio", 1e3)
+    yield "radial clearance", f"{_each(cases, 'radial_clearance', 1e6)} um, c/R {ratios} per mille"
+    yield "grooves, arcs", f"{len(bearing.grooves)}, {len(bearing.arcs)}"
+
+
+def _operation(scenario: Scenario, one: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    supply, target = scenario.thermal.supply_temperature, scenario.target
+    viscosity = f"{number(one['viscosity'] * 1e3)} mPa s at {number(supply - ZERO_CELSIUS)} degC"
+    yield "viscosity", viscosity
+    low, high = scenario.speeds[0] * RPM, scenario.speeds[-1] * RPM
+    many = f"{low:.0f} to {high:.0f} rpm, {len(scenario.speeds)} of them"
+    yield "speed", many if len(scenario.speeds) > 1 else f"{high:.0f} rpm"
+    if isinstance(target, EccentricityTarget):
+        yield "eccentricity ratio", number(target.eccentricity_ratio)
+    else:
+        unit = number(one["unit_load"] / 1e6, 3)
+        yield "load", f"{number(target.load / 1e3)} kN, W/(L D) {unit} MPa"
+    yield "thermal models", ", ".join(model.value for model in scenario.thermal_models)
+    if ThermalModel.THD in scenario.thermal_models:
+        heat = scenario.thermal
+        yield "oil, shaft, bush", f"{heat.inlet.value}, {heat.shaft.value}, {heat.bush.value}"
+    yield "cavitation", scenario.film.cavitation.value
+    if scenario.rotor is not None:
+        ratio = one["weight_to_load"]
+        weight = "" if ratio is None else f", weight {number(ratio, 3)} times the load"
+        yield "rotor mass per bearing", f"{number(scenario.rotor.mass)} kg{weight}"

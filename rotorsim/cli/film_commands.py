@@ -45,10 +45,12 @@ def check(output: Output, scenario: ScenarioArgument) -> int:
     Example: rotorsim check scenarios/dal.toml
     """
     from ..checks import derived_numbers, regime_warnings
+    from ..drawing import drawing_numbers, drawing_warnings, heating_warnings
     from ..scenario import load_scenario
 
     loaded = load_scenario(scenario)
     top = float(loaded.speeds[-1])
+    mass = None if loaded.rotor is None else loaded.rotor.mass
     cases: list[dict[str, Any]] = []
     warnings: list[str] = []
     for case in loaded.cases():
@@ -57,10 +59,17 @@ def check(output: Output, scenario: ScenarioArgument) -> int:
                 "thermal_model": case.thermal.model,
                 "radial_clearance": case.bearing.radial_clearance,
                 "speed": top,
+                "supply_temperature": case.thermal.supply_temperature,
+                **dataclasses.asdict(drawing_numbers(case, mass)),
                 **dataclasses.asdict(derived_numbers(case, top)),
             }
         )
-        warnings += [text for text in regime_warnings(case, top) if text not in warnings]
+        said = (
+            *drawing_warnings(case, mass),
+            *regime_warnings(case, top),
+            *heating_warnings(case, top),
+        )
+        warnings += [text for text in said if text not in warnings]
     output.document(
         {
             "scenario": scenario,

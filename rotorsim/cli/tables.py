@@ -104,6 +104,7 @@ def _rows(point: OperatingPoint) -> list[tuple[str, str, str]]:
         ("maximum pressure", number(point.max_pressure / 1e6), "MPa"),
         ("maximum temperature", number(point.max_temperature - ZERO_CELSIUS), "degC"),
         ("mean temperature", number(point.mean_temperature - ZERO_CELSIUS), "degC"),
+        *_outlet(point),
         ("friction force", number(point.friction_force), "N"),
         ("power loss", number(point.power_loss / 1e3), "kW"),
         ("side flow", number(point.side_flow * 6e4), "L/min"),
@@ -113,5 +114,14 @@ def _rows(point: OperatingPoint) -> list[tuple[str, str, str]]:
         ("residual", number(point.residual, 2), ""),
     ]
     if point.heat_balance is not None:
+        walls = f"{100.0 * point.heat_balance.wall_share:.0f}".replace("-0", "0")
+        rows.append(("heat through bush and shaft", walls, "%"))
         rows.append(("energy imbalance", number(100.0 * point.heat_balance.imbalance, 2), "%"))
     return rows
+
+
+def _outlet(point: OperatingPoint) -> list[tuple[str, str, str]]:
+    value = point.outlet_temperature
+    return (
+        [] if value is None else [("oil outlet temperature", number(value - ZERO_CELSIUS), "degC")]
+    )

@@ -8,9 +8,9 @@ _HEAD = """\
 title = "{title}"
 
 [bearing]
-journal_radius = "50 mm"
+journal_radius = "50 mm"            # half of the diameter
 length = "80 mm"
-radial_clearance = "100 um"         # a list runs them all: ["80 um", "100 um"]
+radial_clearance = "100 um"         # half of the diametral one; a list: ["80 um", "100 um"]
 roughness = "0.8 um"                # a thinner film is reported
 """
 _GROOVES = """
@@ -49,9 +49,14 @@ mesh = {{ circumferential = 96, axial = 24, cross_film = 16 }}   # halve or doub
 
 [thermal]
 models = ["isothermal", "thd"]      # heating neglected, and solved for
-inlet = "fresh"                     # oil where the film begins: fresh | mixing | periodic
-shaft = "ambient"                   # ambient | insulated | a temperature
-bush = "ambient"                    # ambient | insulated | conduction
+# Where the heat goes decides film and losses. The oil carries it all here: a film on the hot side.
+inlet = "mixing"                    # warm oil comes round; "fresh": every film begins with
+                                    # supplied oil, colder; "periodic": nothing fresh, hotter
+shaft = "insulated"                 # it takes no net heat (a long shaft); "ambient": held at
+                                    # ambient temperature, far colder; or a measured temperature
+bush = "insulated"                  # no heat; "conduction": through the bush into the air, the
+                                    # most real (needs bearing.bush_outer_radius, bush_conductivity
+                                    # and bush_heat_transfer); "ambient": held there, far colder
 ambient_temperature = "40 degC"
 supply_temperature = "40 degC"
 

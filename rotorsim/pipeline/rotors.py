@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..model.rotor import JeffcottRotor, Rotor
 from ..stability.over_speed import JeffcottShaft, RigidShaft, RotorOnFilm
+from .wording import number
 
 
 def rotor_on_film(rotor: Rotor | None) -> RotorOnFilm | None:
@@ -22,5 +23,5 @@ def rotor_words(rotor: RotorOnFilm | None) -> str:
     if rotor is None:
         return ""
     if isinstance(rotor, RigidShaft):
-        return f"rotor of {rotor.mass:.4g} kg per bearing"
+        return f"rotor of {number(rotor.mass)} kg per bearing"
     return "Jeffcott rotor" if isinstance(rotor, JeffcottShaft) else "rotor of your matrices"

@@ -24,16 +24,18 @@ VERDICTS = {
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """Short text of a number; a dash where there is none.
+    """Short text of a number, below a million without an exponent; a dash where there is none.
 
     Examples
     --------
-    >>> number(1234.5678), number(7.0e6), number(None)
-    ('1235', '7.000e+06', '-')
+    >>> number(1234.5678), number(18000.0), number(2010.0, 3), number(7.0e6), number(None)
+    ('1235', '18000', '2010', '7.000e+06', '-')
     """
     if value is None or not math.isfinite(value):
         return "-"
-    return f"{value:.{digits}g}" if abs(value) < 1e5 else f"{value:.{digits - 1}e}"
+    if abs(value) >= 1e6:
+        return f"{value:.{digits - 1}e}"
+    return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"
 
 
 def describe(point: OperatingPoint) -> str:

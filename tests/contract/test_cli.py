@@ -35,7 +35,8 @@ title = "tiny"
 {OIL}
 [film]
 mesh = {{ circumferential = 32, axial = 8, cross_film = 8 }}
-{BOTH_MODELS}
+{BOTH_MODELS}shaft = "insulated"
+bush = "insulated"
 [operating]
 speed = {{ start = "6000 rpm", stop = "15000 rpm", count = 4 }}
 eccentricity_ratio = 0.5
@@ -164,7 +165,34 @@ def test_check_says_what_would_run(tiny, tmp_path, here):
     # rho U c/mu at 15 000 rpm
     reynolds = 860.0 * (15000 * np.pi / 30 * 0.05) * 100e-6 / 0.0277
     assert said["cases"][0]["reynolds_number"] == pytest.approx(reynolds)
+    assert said["cases"][0]["clearance_ratio"] == pytest.approx(2e-3)
     assert os.listdir(tmp_path) == ["tiny.toml"]
+
+
+def test_check_shows_the_drawing_and_warns_of_what_is_mistyped(tiny, here):
+    said = flat(here("check", tiny).stdout)
+    for text in (
+        "diameter 100 mm",
+        "80 mm, L/D 0.8",
+        "0.2 mm",
+        "c/R 2 per mille",
+        "Cold, and warm",
+    ):
+        assert text in said
+    diametral = TINY.replace('"100 um"', '"10 um"')
+    tiny.write_text(diametral, encoding="utf-8")
+    done = here("check", tiny)
+    assert done.returncode == 0
+    assert "warning: c/R 0.2 per mille is outside 0.3 to 5" in done.stderr
+
+
+def test_cooled_walls_are_named_with_what_they_take(tiny, here):
+    cooled = TINY.replace('"insulated"', '"ambient"')
+    tiny.write_text(cooled, encoding="utf-8")
+    done = here("solve", tiny, "-s", "5000 rpm", "-m", "thd")
+    assert done.returncode == 0
+    assert "warning: bush and shaft held at ambient temperature" in done.stderr
+    assert re.search(r"heat through bush and shaft +[5-9]\d +%", done.stdout)
 
 
 def test_table_is_written_with_its_scenario_and_no_journal_is_left(tabulated):
@@ -236,6 +264,8 @@ def test_new_writes_a_scenario_that_checks(options, tmp_path, here):
     assert done.returncode == 0, done.stderr
     text = (tmp_path / "pump.toml").read_text(encoding="utf-8")
     assert text.count("#") > 10
+    heat = tomllib.loads(text)["thermal"]
+    assert [heat[key] for key in ("inlet", "shaft", "bush")] == ["mixing", "insulated", "insulated"]
     assert ("eccentricity_ratio" in tomllib.loads(text)["operating"]) == (
         "--eccentricity" in options
     )

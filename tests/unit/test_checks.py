@@ -14,18 +14,22 @@ from rotorsim.checks import (
 )
 from rotorsim.model import (
     Bearing,
+    BushModel,
     Case,
     EccentricityTarget,
     ExponentialViscosity,
     FilmSettings,
     Groove,
     Inception,
+    InletModel,
     LoadTarget,
     Lubricant,
+    ShaftModel,
     ThermalModel,
     ThermalSettings,
     WaltherViscosity,
 )
+from rotorsim.operating_point import HeatBalance
 
 OMEGA = 15000 * math.pi / 30
 OIL = Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13)
@@ -113,3 +117,34 @@ def test_a_thermal_film_wants_an_anchor() -> None:
     assert regime_warnings(grooved, OMEGA) == ()
     isothermal = replace(free, thermal=ThermalSettings(model=ThermalModel.ISOTHERMAL))
     assert regime_warnings(isothermal, OMEGA) == ()
+
+
+def test_warm_film_by_its_own_equation() -> None:
+    """r = r_cold exp(-beta r/2): at r = 2 W(beta r_cold/2)/beta, W Lambert's function."""
+    from scipy.special import lambertw
+
+    numbers = derived_numbers(CASE, OMEGA)
+    cold = numbers.adiabatic_temperature_rise
+    rise = 2.0 * lambertw(0.5 * 0.034 * cold).real / 0.034
+    assert numbers.warm_temperature == pytest.approx(313.15 + 0.5 * rise, rel=1e-9)
+    thinned = math.exp(0.034 * 0.5 * rise)
+    assert numbers.warm_reynolds_number == pytest.approx(243.84 * thinned, rel=1e-4)
+    assert numbers.warm_taylor_number == pytest.approx(10.905 * thinned, rel=1e-4)
+    mixing = replace(CASE, thermal=ThermalSettings(inlet=InletModel.MIXING))
+    assert derived_numbers(mixing, OMEGA).warm_temperature == pytest.approx(313.15 + rise, rel=1e-9)
+
+
+def test_held_walls_that_take_most_of_the_heat() -> None:
+    def found(bush: float, shaft: float, hottest: float = 340.0, case: Case = CASE):
+        heat = HeatBalance(1000.0, 1000.0 - bush - shaft, bush, shaft)
+        return regime_warnings(case, OMEGA, max_temperature=hottest, heat_balance=heat)
+
+    (line,) = found(300.0, 480.0)
+    assert line.startswith("bush and shaft held at ambient temperature, 40 degC, take 78 %")
+    assert found(240.0, 240.0) == ()
+    assert found(300.0, 480.0, hottest=322.0) == ()  # nothing that heating changes
+    conducting = ThermalSettings(bush=BushModel.CONDUCTION, shaft=ShaftModel.INSULATED)
+    assert found(780.0, 0.0, case=replace(CASE, thermal=conducting)) == ()
+    shaft_only = replace(CASE, thermal=ThermalSettings(bush=BushModel.INSULATED))
+    (line,) = found(0.0, 780.0, case=shaft_only)
+    assert line.startswith("shaft held")
