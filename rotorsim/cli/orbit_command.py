@@ -117,6 +117,7 @@ def _coefficients(
 ) -> CoefficientTable | None:
     """Table for linear coefficients; a nonlinear film needs none."""
     from ..interchange import read_table
+    from ..pipeline.provenance import differences
     from ..scenario import OrbitForce
 
     if loaded.orbit is not None and loaded.orbit.force is not OrbitForce.LINEAR:
@@ -126,7 +127,11 @@ def _coefficients(
             )
         return None
     if table is not None:
-        return read_table(table)
+        found = read_table(table)
+        differing = differences(loaded, found)
+        if differing:
+            output.warn(f"{table} was computed for another scenario: {', '.join(differing)} differ")
+        return found
     return computed_table(output, loaded, table_path(scenario, Path()), workers)[1]
 
 

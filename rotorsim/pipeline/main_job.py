@@ -217,7 +217,7 @@ def eigenvalue_paths(scenario: Scenario, table: CoefficientTable) -> list[Eigenv
     clearance = settings.radial_clearance if settings else scenario.radial_clearances[0]
     paths = []
     for model in (str(name) for name in table.dataset["thermal_model"].values):
-        one = table.select(thermal_model=model, radial_clearance=clearance)
+        one = orbit_steps.curve_of(table, model, clearance)
         if converged_speeds(one).size < 2:
             continue
         branches, thresholds = rotor_modes(one, rotor), rotor_thresholds(one, rotor)

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     from ..scenario import OrbitSettings, Scenario
     from ..table import CoefficientTable
 
+UNPLACED = (
+    "the table does not say where the journal stands: the motion is shown about the bearing's "
+    "centre, and touch-down is not looked for"
+)
 MAX_SAMPLES = 2_000_000
 """Of one orbit that are kept in memory: some 200 MB."""
 RUN_UP_SECONDS = 1.0
@@ -120,10 +124,12 @@ def orbit_problem(
         model = thermal_model or preferred_model(table)
         force, bearing = linear_force(scenario, table, model)
         # the coefficients hold about the loaded position, so that the load itself is left out
-        load, note, carried = 0.0, "", _carried_load(table, model, settings, schedule.speeds[0])
+        load, carried = 0.0, _carried_load(table, model, settings, schedule.speeds[0])
+        placed = has_positions(table)
+        note = "" if placed else UNPLACED
     else:
         model = thermal_model or preferred_scenario_model(scenario)
-        film = nonlinear_film(scenario, model, max(schedule.speeds))
+        film, placed = nonlinear_film(scenario, model, max(schedule.speeds)), True
         force, bearing, load, note = film.force, film.bearing, film.load, film.note
         carried = load
     problem = OrbitProblem(
@@ -135,6 +141,7 @@ def orbit_problem(
         initial_velocity=settings.initial_velocity,
         loads=settings.loads,
         minimum_film=scenario.bearing.roughness,
+        stop_at_contact=placed,
         samples_per_revolution=settings.samples_per_revolution,
         thermal_model=model,
         bearing=bearing,
@@ -152,8 +159,7 @@ def _carried_load(
     """Static load of the table [N]; None where it does not say."""
     if settings.actuator is None:
         return None
-    clearance = settings.radial_clearance
-    return table.at(speed, thermal_model=model, radial_clearance=clearance).load
+    return curve_of(table, model, settings.radial_clearance).at(speed).load
 
 
 def linear_force(
@@ -163,11 +169,13 @@ def linear_force(
     from ..orbit import LinearForce
 
     clearance = orbit_settings(scenario)[0].radial_clearance
-    one = table.select(thermal_model=model, radial_clearance=clearance)
+    one = curve_of(table, model, clearance)
+    if not one.converged.any():
+        raise InputError("no point of the table converged", source=scenario.source, key="orbit")
     force = LinearForce(
         coefficients=one.interpolator(),
         radial_clearance=clearance,
-        equilibrium=static_position(one),
+        equilibrium=static_position(one, clearance) if has_positions(one) else (0.0, 0.0),
     )
     bearing = replace(scenario.bearing, radial_clearance=clearance)
     return force, bearing.turned(-scenario.load_direction)
@@ -248,8 +256,29 @@ def preferred_model(table: CoefficientTable) -> str:
     return "thd" if "thd" in models else models[0]
 
 
-def static_position(one: CoefficientTable) -> Callable[[float], tuple[float, float]]:
-    """Journal's static position over speed, from a table of one curve.
+def curve_of(table: CoefficientTable, model: str, clearance: float) -> CoefficientTable:
+    """Curve of a thermal model and a clearance [m]; a table without clearances is for any."""
+    known = table.dataset["radial_clearance"].values
+    chosen = {} if np.isnan(known).all() else {"radial_clearance": clearance}
+    return table.select(thermal_model=model, **chosen)
+
+
+def has_positions(table: CoefficientTable) -> bool:
+    """Whether the table says where the journal stands; one of another program need not."""
+    return {"eccentricity_ratio", "attitude_angle"} <= set(table.dataset)
+
+
+def static_position(
+    one: CoefficientTable, clearance: float
+) -> Callable[[float], tuple[float, float]]:
+    """Journal's static position over speed, from a table of one curve with positions.
+
+    Parameters
+    ----------
+    one : CoefficientTable
+        With a converged point.
+    clearance : float
+        Radial [m].
 
     Returns
     -------
@@ -261,7 +290,7 @@ def static_position(one: CoefficientTable) -> Callable[[float], tuple[float, flo
 
     usable = one.converged.ravel()
     curve = one.dataset.squeeze(list(one.choices))
-    eccentricity = curve["eccentricity_ratio"].values * float(curve["radial_clearance"])
+    eccentricity = curve["eccentricity_ratio"].values * clearance
     angle = curve["attitude_angle"].values
     places = np.column_stack([eccentricity * np.cos(angle), eccentricity * np.sin(angle)])[usable]
     if len(places) == 1:

@@ -83,13 +83,11 @@ def expected_growth(table: CoefficientTable, orbit: Orbit, mass: float) -> float
     """Growth rate that the eigenvalues give for the orbit's last speed [1/s]."""
     from ..errors import InputError
     from ..stability.rates import eigenvalues
+    from .orbits import curve_of
 
     try:
-        film = table.at(
-            float(orbit.speed[-1]),
-            thermal_model=orbit.thermal_model,
-            radial_clearance=orbit.radial_clearance,
-        )
+        one = curve_of(table, orbit.thermal_model, orbit.radial_clearance)
+        film = one.at(float(orbit.speed[-1]))
     except InputError:
         return None
     return float(eigenvalues(film.stiffness, film.damping, mass).real.max())

@@ -164,3 +164,51 @@ def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
         for x, y in zip(orbit.x, orbit.y, strict=True)
     }
     assert len(exact - found) < 0.02 * len(exact)  # single precision rounds some the other way
+
+
+LINEAR = TEXT.replace('force = "film"', 'force = "linear"')
+
+
+def test_coefficients_of_another_program_run_in_time(call, here, tmp_path):
+    """A table without positions or clearances: the same growth as with them."""
+    (tmp_path / "linear.toml").write_text(LINEAR, encoding="utf-8")
+    done = here("table", "linear.toml")
+    assert done.returncode == 0, done.stderr
+    own = strict(call("linear.toml", "--table", "coefficients/linear.nc", "--json").stdout)
+    columns = np.loadtxt(_as_csv(here, tmp_path), delimiter=",", skiprows=1)
+    units = {"k": "N/m", "c": "N s/m"}
+    heads = [f"{n}{at} [{units[n]}]" for n in units for at in ("xx", "xy", "yx", "yy")]
+    head = ",".join(["speed [rad/s]", *heads])
+    (tmp_path / "theirs.csv").write_text(
+        head + "\n" + "\n".join(",".join(map(repr, map(float, row))) for row in columns)
+    )
+    done = call("linear.toml", "--table", "theirs.csv", "--json")
+    assert done.returncode == 0, done.stderr
+    (row,) = strict(done.stdout)["orbits"]
+    assert row["growth_rate"] == pytest.approx(own["orbits"][0]["growth_rate"], rel=1e-3)
+    assert "does not say where the journal stands" in row["message"]
+
+
+def _as_csv(here, tmp_path) -> Path:
+    from rotorsim.table import CoefficientTable
+
+    one = CoefficientTable.load(tmp_path / "coefficients" / "linear.nc").select()
+    k, c = one.stiffness.reshape(-1, 4), one.damping.reshape(-1, 4)
+    path = tmp_path / "numbers.csv"
+    np.savetxt(path, np.column_stack([one.speeds, k, c]), delimiter=",", header="x")
+    return path
+
+
+def test_a_table_of_another_bearing_is_noticed(call, here, tmp_path):
+    (tmp_path / "linear.toml").write_text(LINEAR, encoding="utf-8")
+    other = LINEAR.replace('length = "25 mm"', 'length = "30 mm"').replace("0.02 Pa*s", "0.03 Pa*s")
+    (tmp_path / "other.toml").write_text(other, encoding="utf-8")
+    (tmp_path / "finer.toml").write_text(LINEAR.replace("axial = 8", "axial = 10"))
+    for name in ("other.toml", "finer.toml"):
+        assert here("table", name).returncode == 0
+    done = call("linear.toml", "--table", "coefficients/other.nc", "--quiet")
+    assert done.returncode == 0
+    said = " ".join(done.stderr.split())
+    assert "another scenario: bearing.length, lubricant differ" in said
+    done = call("linear.toml", "--table", "coefficients/finer.nc", "--quiet")
+    assert "another scenario" not in done.stderr

@@ -63,7 +63,7 @@ def test_threshold_speed_is_where_the_critical_mass_is_the_rotors(scenario, poin
 
 def test_static_position_is_where_the_table_says(scenario, points):
     one = as_table(points, scenario).select(radial_clearance=120e-6)
-    x, y = static_position(one)(float(one.speeds[1]))
+    x, y = static_position(one, 120e-6)(float(one.speeds[1]))
     point = next(p for p in points if p.radial_clearance == pytest.approx(120e-6))
     assert np.hypot(x, y) == pytest.approx(0.5 * 120e-6)
     assert np.arctan2(y, x) == pytest.approx(point.attitude_angle)
