@@ -74,6 +74,7 @@ QUANTITIES = {kind.name: kind for kind in _KINDS}
 """Every kind of quantity, by name."""
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)(?![\d.,_])\s*", re.ASCII)
+_COMMA = re.compile(r"\s*[+-]?\d+,\d", re.ASCII)
 _TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*|\*\*|[*/^()]|[+-]?[0-9]+")
 _POWER_WITHOUT_SIGN = re.compile(r"\b(m|mm|cm|um|in|ft|s)([234])\b")
 _SYMBOLS = (
@@ -104,11 +105,18 @@ _HINTS = {
     ("C", "temperature"): 'Celsius is written "degC"',
     ("F", "temperature"): 'Fahrenheit is written "degF"',
     ("kg", "force"): 'that is a mass; write "N" or "kgf"',
+    ("t", "force"): "that is a mass; its weight is 9.81 kN for each tonne",
+    ("tonne", "force"): "that is a mass; its weight is 9.81 kN for each tonne",
+    ("g", "force"): 'that is a mass; write "N"',
     ("lb", "force"): 'that is a mass; write "lbf"',
+    ("lbs", "force"): 'that is a mass; write "lbf"',
     ("kHz", "speed"): 'write "Hz" or "rpm"',
-    ("psig", "pressure"): 'write "psi"; supply pressures are gauge pressures',
-    ("bar(g)", "pressure"): 'write "bar"; supply pressures are gauge pressures',
 }
+_GAUGE = re.compile(
+    r"\s*(?P<unit>m?bar|[kM]?Pa|psi|atm)[\s_(]*(?P<zero>g|gauge|a|abs|absolute)\)?\s*",
+    re.IGNORECASE,
+)
+"""A unit of pressure with the zero that it counts from."""
 
 
 def parse_quantity(
@@ -171,19 +179,29 @@ class _Refusal(Exception):
     """Why a text is not the quantity wanted."""
 
 
+def _one(kind: Kind) -> str:
+    """Kind with its article: a length, an angle."""
+    return f"{'an' if kind.name[0] in 'aeiou' else 'a'} {kind.name}"
+
+
 def _parse(text: object, kind: Kind) -> float:
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise _Refusal(f"must be one {kind.name} with its unit, in quotes")
     if not isinstance(text, str):
-        raise _Refusal(f"is a bare number: a {kind.name} needs its unit, in quotes")
+        raise _Refusal(f"is a bare number: {_one(kind)} needs its unit, in quotes")
     if len(text) > MAX_TEXT:
-        raise _Refusal(f"is too long to be a {kind.name} ({len(text)} characters)")
+        raise _Refusal(f"is too long to be {_one(kind)} ({len(text)} characters)")
     number = _NUMBER.match(text)
     if number is None:
-        raise _Refusal(f"must be a {kind.name}: a finite decimal number, then its unit")
+        point = (
+            ", with a point for the decimals and nothing between thousands"
+            if _COMMA.match(text)
+            else ""
+        )
+        raise _Refusal(f"must be {_one(kind)}: a finite decimal number{point}, then its unit")
     unit = text[number.end() :].strip()
     if not unit:
-        raise _Refusal(f"lacks its unit: a {kind.name} is needed")
+        raise _Refusal(f"lacks its unit: {_one(kind)} is needed")
     offset, factor = _conversion(unit, kind)
     value = offset + factor * float(number.group(1))
     if not math.isfinite(value):
@@ -276,6 +294,11 @@ def _unknown_unit(text: str, error: Exception) -> str:
 
 def _hint(text: str, kind: Kind) -> str:
     hint = _HINTS.get((text, kind.name))
+    pressure = _GAUGE.fullmatch(text) if kind.name == "pressure" else None
+    if pressure is not None:
+        hint = f'pressures are gauge pressures, above the ambient; write "{pressure["unit"]}"'
+        if pressure["zero"].lower().startswith("a"):
+            hint += " and subtract the ambient pressure"
     return f" ({hint})" if hint else ""
 
 

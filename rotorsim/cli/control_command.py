@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import InputError
-from .inputs import wanted_mass
+from .inputs import wanted_clearance, wanted_mass
 from .options import ClearanceOption, ModelOption, ScenarioArgument, SpeedOption
 from .output import DONE, INCOMPLETE, Output
 from .stability_options import FolderOption, MassOption
@@ -115,7 +115,8 @@ def _mass(scenario: Scenario, text: str | None) -> float:
 def _case(scenario: Scenario, clearance: str | None, model: str | None) -> Case:
     names = [str(name) for name in scenario.thermal_models]
     chosen = model or ("thd" if "thd" in names else names[0])
-    return scenario.case(_quantity(clearance, "length", "--clearance", "100 um"), chosen)
+    wanted = None if clearance is None else wanted_clearance(scenario, clearance)
+    return scenario.case(wanted, chosen)
 
 
 def study_document(study: ControlStudy) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -19,14 +20,29 @@ if TYPE_CHECKING:
 
 def wanted_cases(scenario: Scenario, clearance: str | None, model: str | None) -> list[Case]:
     """Cases of `scenario` that the options ``--clearance`` and ``--model`` leave."""
-    from ..units import parse_quantity
-
     clearances, models = scenario.radial_clearances, scenario.thermal_models
     if clearance is not None:
-        clearances = (parse_quantity(clearance, "length", key="--clearance", example="100 um"),)
+        clearances = (wanted_clearance(scenario, clearance),)
     if model is not None:
         models = (model,)
     return [scenario.case(one, kind) for kind in models for one in clearances]
+
+
+def wanted_clearance(scenario: Scenario, text: str) -> float:
+    """Clearance [m] of ``--clearance``, which the scenario must list."""
+    from ..units import parse_quantity
+
+    value = parse_quantity(text, "length", key="--clearance", example="100 um")
+    listed = scenario.radial_clearances
+    if not any(math.isclose(value, one, rel_tol=1e-6) for one in listed):
+        allowed = ", ".join(f"{one * 1e6:g} um" for one in listed)
+        raise InputError(
+            f"must be one that the scenario lists in bearing.radial_clearance: {allowed}; "
+            "add it there to run it",
+            key="--clearance",
+            value=text,
+        )
+    return value
 
 
 def wanted_speeds(scenario: Scenario, speed: str | None) -> list[float]:

@@ -45,7 +45,7 @@ from .schema import (
     ThermalTable,
 )
 from .settings import RotorKind, StabilitySettings
-from .tolerances import KINDS, ToleranceSettings
+from .tolerances import KINDS, NORMAL_REACH, Distribution, Spread, ToleranceSettings
 
 SENSIBLE_VISCOSITY = (1e-7, 1e5)
 """Of the oil at the temperatures given [Pa s]."""
@@ -303,4 +303,31 @@ def tolerance_settings(tables: ScenarioTables) -> ToleranceSettings | None:
             "goes with operating.load; with an eccentricity ratio the load is a result",
             key="tolerances.load",
         )
+    _check_reach(tables, spreads, table.distribution)
     return ToleranceSettings(spreads, table.distribution, table.samples, table.seed)
+
+
+def _check_reach(
+    tables: ScenarioTables, spreads: dict[str, Spread], distribution: Distribution
+) -> None:
+    """Refuse spreads that leave nothing of the value they are about, or less."""
+    about = {
+        "radial_clearance": ("bearing", min(tables.bearing.radial_clearance), 1e6, "um"),
+        "load": ("operating", tables.operating.load or math.inf, 1e-3, "kN"),
+    }
+    for name, spread in spreads.items():
+        normal = (spread.distribution or distribution) is Distribution.NORMAL
+        table, nominal, factor, unit = about.get(name, ("", math.inf, 1.0, ""))
+        if spread.relative:  # of whatever it is a share
+            nominal, factor, unit = 1.0, 100.0, "%"
+        limit = nominal / (NORMAL_REACH if normal else 1.0)
+        if spread.value < limit:
+            continue
+        of = "" if spread.relative else f" {table}.{name}, {nominal * factor:.6g} {unit}"
+        raise InputError(
+            f"must be below {limit * factor:.6g} {unit}: a normal distribution reaches four "
+            f"standard deviations, and something must be left of{of or ' the value'}"
+            if normal
+            else f"must be below{of}: something must be left of it",
+            key=f"tolerances.{name}",
+        )

@@ -76,7 +76,8 @@ def bearing_grooves(table: BearingTable) -> tuple[Groove, ...]:
         key = f"bearing.groove[{index}]"
         if entry.length is not None and entry.length > table.length * (1.0 + 1e-12):
             raise InputError(
-                f"must not be longer than the bearing ({table.length:g} m)", key=f"{key}.length"
+                f"must not be longer than the bearing ({table.length * 1e3:g} mm)",
+                key=f"{key}.length",
             )
         try:
             grooves.append(
@@ -112,7 +113,7 @@ def check_grooves(bearing: Bearing, mesh: MeshSize) -> None:
             needed = 2 * math.ceil(LEAST_CELLS * bearing.length / groove.length / 2.0)
             raise InputError(
                 f"the mesh is too coarse for this groove: film.mesh.axial must be {needed} or "
-                f"more, or the groove at least {least:.4g} m long",
+                f"more, or the groove at least {least * 1e3:.4g} mm long",
                 key=f"{key}.length",
             )
     order = sorted(range(len(bearing.grooves)), key=lambda i: bearing.grooves[i].center % FULL_TURN)
@@ -190,7 +191,7 @@ def check_tilt(bearing: Bearing, eccentricity_ratio: float | None) -> None:
     if math.hypot(at_end, eccentricity_ratio or 0.0) >= 1.0:
         raise InputError(
             "the tilted journal touches the bore at the bearing's end: the tilt must stay below "
-            f"{2.0 * bearing.radial_clearance / bearing.length:.4g} rad, less what the "
+            f"{2e3 * bearing.radial_clearance / bearing.length:.4g} mrad, less what the "
             "eccentricity takes",
             key="bearing.tilt",
         )

@@ -173,9 +173,11 @@ class Scenario:
         for clearance in self.radial_clearances:
             if wanted is not None and math.isclose(clearance, wanted, rel_tol=1e-6):
                 return clearance
-        allowed = ", ".join(f"{clearance:g}" for clearance in self.radial_clearances)
+        allowed, said = (
+            ", ".join(f"{one * factor:g}" for one in self.radial_clearances) for factor in (1, 1e6)
+        )
         raise ScenarioError(
-            f"must be one of the scenario's clearances: {allowed} m",
+            f"must be one of the clearances that the scenario lists: {allowed} m ({said} um)",
             source=self.source,
             key="radial_clearance",
             value=wanted,

@@ -17,6 +17,8 @@ from .fields import nearest
 _PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*", re.ASCII)
 _MAX_PERCENT = 50.0
 DEFAULT_SAMPLES = 256
+NORMAL_REACH = 4.0
+"""Standard deviations at which a normal distribution is cut off."""
 
 
 class Distribution(StrEnum):

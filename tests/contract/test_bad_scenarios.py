@@ -221,13 +221,13 @@ BAD = [
         END,
         END + GROOVES.replace('"20 deg"', '"20 deg"\nlength = "90 mm"', 1),
         "bearing.groove[0].length",
-        ["90 mm", "0.08"],
+        ["90 mm", "(80 mm)"],
     ),
     (
         END,
         END + GROOVES.replace("100 deg", "270 deg").replace('"20 deg"', '"20 deg"\nlength="4 mm"'),
         "bearing.groove[0].length",
-        ["4 mm", "40"],
+        ["4 mm", "40 or more", "at least 10 mm long"],
     ),
     (END, END + ARCS, "bearing.arc[0].end", ["100 deg", "overlaps"]),
     (END, END + ARCS.replace('"100 deg"', '"80 deg"'), "bearing.arc[0].end", ["80 deg", "open"]),
@@ -267,6 +267,24 @@ BAD = [
     ),
     (END, END + "revolutions = 1e9\n", "orbit.revolutions", ["1000000000.0", "whole number"]),
     (END, END + "[stability]\nmass = 3\n", "stability.mass", ["3", "1200 kg"]),
+    (
+        END,
+        END + '[tolerances]\nradial_clearance = "100 um"\n',
+        "tolerances.radial_clearance",
+        ["'100 um'", "below bearing.radial_clearance, 100 um"],
+    ),
+    (
+        END,
+        END + '[tolerances]\nradial_clearance = "25.1 um"\ndistribution = "normal"\n',
+        "tolerances.radial_clearance",
+        ["25.1 um", "four standard deviations", "25 um"],
+    ),
+    (
+        END,
+        END + '[tolerances]\nviscosity = { spread = "30 %", distribution = "normal" }\n',
+        "tolerances.viscosity",
+        ["30 %", "25 %"],
+    ),
     (END, END + '[stability]\nmass = ["2 kg", "1 kg"]\n', "stability.mass[1]", ["1 kg", "ascend"]),
 ]
 

@@ -139,6 +139,15 @@ def test_shipped_scenarios_are_found_by_name(nonsense):
     assert Path("mine.toml").read_text(encoding="utf-8") == shipped
 
 
+@pytest.mark.parametrize("command", ["solve", "control"])
+def test_a_clearance_is_answered_in_the_unit_of_drawings(command, nonsense):
+    done = nonsense(command, "good.toml", "--clearance", "0.18 mm")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: --clearance: must be one that the scenario lists in")
+    assert "bearing.radial_clearance: 100 um;" in done.stderr
+    assert "(found: '0.18 mm')" in done.stderr
+
+
 def tampered(path: Path, how: str) -> str:
     import h5py
 

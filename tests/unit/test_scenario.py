@@ -99,7 +99,7 @@ def test_cases_go_model_by_model() -> None:
 def test_case_may_omit_what_leaves_no_choice() -> None:
     assert Scenario.from_text(MINIMAL).case() == next(Scenario.from_text(MINIMAL).cases())
     dal = load_scenario(SCENARIOS / "dal.toml")
-    with pytest.raises(ScenarioError, match=r"0\.0001, 0\.000125, 0\.00015"):
+    with pytest.raises(ScenarioError, match=r"0\.0001, 0\.000125, 0\.00015 m \(100, 125, 150 um"):
         dal.case(thermal_model="thd")
     with pytest.raises(ScenarioError, match=r"0\.0001, 0\.000125, 0\.00015.*9e-05"):
         dal.case(9e-5, "thd")
