@@ -21,6 +21,7 @@ import numpy as np
 
 from ..atomic import replacing
 from ..errors import TableError
+from ..file_kinds import HEAD, FileKind, recognise, sentence
 from ..status import SolveStatus
 from .assembly import build
 from .variables import COEFFICIENTS, CONVENTIONS, DIMENSIONS
@@ -48,6 +49,9 @@ _UNITS: dict[str, dict[str, float]] = {
 _TEXT = ("thermal_model", "status")
 _HEADER = re.compile(r"\s*([A-Za-z_]+)\s*(?:\[([^\]]*)\])?\s*")
 _REQUIRED = ("speed", *COEFFICIENTS)
+_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
+_WRITTEN = "speed as written"
+"""Of a row: the speed in the file's own unit, for messages."""
 
 Row = dict[str, float | str]
 
@@ -61,10 +65,7 @@ def read(path: str | Path) -> xr.Dataset:
         With the file, and the row and column where something is wrong.
     """
     source = Path(path)
-    try:
-        lines = source.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise TableError(f"cannot be read: {error}", source=source) from error
+    lines = _text(source).splitlines()
     numbered = [
         (number, fields)
         for number, fields in enumerate(csv.reader(lines), start=1)
@@ -79,8 +80,43 @@ def read(path: str | Path) -> xr.Dataset:
     return _arrange(rows, source)
 
 
+def _text(source: Path) -> str:
+    """Text of a file that is one, and no other kind of file."""
+    try:
+        data = source.read_bytes()
+    except OSError as error:
+        raise TableError(f"cannot be read: {error.strerror}", source=source) from error
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        raise TableError('is text in UTF-16; save it as UTF-8 ("CSV UTF-8")', source=source)
+    kind = recognise(data[:HEAD])
+    if kind not in (None, FileKind.CSV):
+        raise TableError(f"{sentence(kind)}; here a CSV table is needed", source=source)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise TableError(
+            f"must be text in UTF-8; byte 0x{data[error.start]:02x} in line {line} is not; save it "
+            'as UTF-8 ("CSV UTF-8")',
+            source=source,
+        ) from error
+
+
+def _check_separator(fields: list[str], source: Path) -> None:
+    """Refuse a header whose columns something else than commas separates."""
+    for separator, name in _SEPARATORS.items():
+        if len(",".join(fields).split(separator)) >= len(_REQUIRED) > len(fields):
+            raise TableError(
+                f"the columns are separated by {name}; separate them by commas, with a point for "
+                "the decimals",
+                source=source,
+                key="header",
+            )
+
+
 def _parse_header(fields: list[str], source: Path) -> list[tuple[str, float]]:
     """Name and factor to SI of every column; the factor of a text is 1."""
+    _check_separator(fields, source)
     columns: list[tuple[str, float]] = []
     for field in fields:
         match = _HEADER.fullmatch(field)
@@ -113,8 +149,10 @@ def _parse_row(
     fields: list[str], columns: list[tuple[str, float]], number: int, source: Path
 ) -> Row:
     if len(fields) != len(columns):
+        more = len(fields) > len(columns)
         raise TableError(
-            f"has {len(fields)} fields, the header {len(columns)}",
+            f"has {len(fields)} fields, the header {len(columns)}"
+            + ("; decimals are written with a point, not a comma" if more else ""),
             source=source,
             key=f"row {number}",
         )
@@ -132,8 +170,12 @@ def _parse_row(
         try:
             value = float(field)
         except ValueError:
+            comma = "; write decimals with a point" if re.search(r"\d,\d", field) else ""
             raise TableError(
-                "not a number", source=source, key=f"row {number}, column {name}", value=field
+                f"not a number{comma}",
+                source=source,
+                key=f"row {number}, column {name}",
+                value=field,
             ) from None
         excused = name not in ("speed", "radial_clearance") and row["status"] != "converged"
         if not (math.isfinite(value) or excused):
@@ -145,6 +187,8 @@ def _parse_row(
                 "must be above 0", source=source, key=f"row {number}, column {name}", value=field
             )
         row[name] = value * factor
+        if name == "speed":
+            row[_WRITTEN] = field.strip()
     return row
 
 
@@ -157,8 +201,8 @@ def _arrange(rows: list[tuple[int, Row]], source: Path) -> xr.Dataset:
         group = groups.setdefault(key, [])
         if group and float(row["speed"]) <= float(group[-1][1]["speed"]):
             raise TableError(
-                "speeds must ascend", source=source, key=f"row {number}, column speed",
-                value=float(row["speed"]),
+                f"speeds must ascend, and {group[-1][1][_WRITTEN]} stands before; sort the rows",
+                source=source, key=f"row {number}, column speed", value=row[_WRITTEN],
             )  # fmt: skip
         group.append((number, row))
     models = list(dict.fromkeys(model for model, _ in groups))

@@ -292,6 +292,11 @@ def test_csv_round_trip(table, tmp_path):
     [
         (HEADER, [ROWS[0], "2000,2,2,nan,4,5,6,7,8"], r"t\.csv: row 4, column kyx: must be finite"),
         (HEADER, [ROWS[0], "2000,2,2,x,4,5,6,7,8"], "row 4, column kyx: not a number"),
+        (HEADER, ["2000,2,2,3,4,5,6,7,8,9"], "decimals are written with a point"),
+        (HEADER, ['2000,2,"2,5",3,4,5,6,7,8'], "not a number; write decimals with a point"),
+        (HEADER.replace(",", ";"), ["2000;2,5;2;3;4;5;6;7;8"], "separated by semicolons; separate"),
+        (HEADER.replace(",", "\t"), ["2000\t2\t2\t3\t4\t5\t6\t7\t8"], "separated by tabs"),
+        (HEADER, [ROWS[0], ROWS[2], ROWS[1]], r"speed: .*3000 stands before; .*'2000'"),
         (HEADER, [ROWS[0], ROWS[2], ROWS[1]], "row 5, column speed: speeds must ascend"),
         (HEADER, [ROWS[0], ROWS[0]], "row 4, column speed: speeds must ascend"),
         (HEADER, ["1000,2,2"], "row 3: has 3 fields"),
@@ -307,6 +312,22 @@ def test_csv_round_trip(table, tmp_path):
 def test_bad_csv_names_row_and_column(tmp_path, header, rows, message):
     with pytest.raises(TableError, match=message):
         CoefficientTable.from_csv(write_csv(tmp_path / "t.csv", header, rows))
+
+
+@pytest.mark.parametrize(
+    ("encoding", "message"),
+    [
+        ("utf-16", "UTF-16; save it as UTF-8"),
+        ("utf-16-be", "UTF-8; byte"),
+        ("latin-1", "byte 0xe9 in line 1"),
+    ],
+)
+def test_csv_in_another_encoding_is_named(tmp_path, encoding, message):
+    path = tmp_path / "t.csv"
+    text = "\n".join(["# é", HEADER, *ROWS])
+    path.write_text(text, encoding=encoding)
+    with pytest.raises(TableError, match=message):
+        CoefficientTable.from_csv(path)
 
 
 def test_csv_groups_need_the_same_speeds(tmp_path):
