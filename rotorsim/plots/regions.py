@@ -11,6 +11,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
+from rotorsim.errors import InputError
+
 from .style import axes_or_new, figure_of, model_label, model_style
 
 Array = NDArray[np.float64]
@@ -64,8 +66,21 @@ def stability_plane(
         Marked by a star, in the axes' units.
     border : str
         Name of the line between stable and unstable.
+
+    Raises
+    ------
+    InputError
+        An axis has one value.
     """
+    for axis in (x, y):
+        if axis.values.size < 2:
+            raise InputError("a map needs two values or more along each axis", key=axis.label)
     ax = axes_or_new(ax, (6.6, 4.9))
+    # The least of two rates bends within a coarse cell: only on a fine grid do the regions meet.
+    along, across = _finer(x.values), _finer(y.values)
+    isothermal_decay = _bilinear(x.values, y.values, isothermal_decay, along, across)
+    if heated_decay is not None:
+        heated_decay = _bilinear(x.values, y.values, heated_decay, along, across)
     hot = isothermal_decay if heated_decay is None else heated_decay
     known = np.isfinite(isothermal_decay) & np.isfinite(hot)
     ax.set_facecolor("#bbbbbb")
@@ -82,13 +97,13 @@ def stability_plane(
             continue
         values = np.ma.masked_invalid(level).T
         top = max(float(values.max()), 1e-30)
-        filled = ax.contourf(x.values, y.values, values, [0.0, top], colors=[region.face])
+        filled = ax.contourf(along, across, values, [0.0, top], colors=[region.face])
         if region.hatch:
             filled.set_hatch(region.hatch)
             filled.set_edgecolor(region.edge)
             filled.set_linewidth(0.0)
         shown.append(Patch(fc=region.face, hatch=region.hatch, ec="#333333", label=region.label))
-    shown += _borders(ax, x.values, y.values, isothermal_decay, heated_decay, border)
+    shown += _borders(ax, along, across, isothermal_decay, heated_decay, border)
     if not known.all():
         shown.append(Patch(fc="#bbbbbb", ec="#333333", label="not computed"))
     if operating_point is not None:
@@ -107,6 +122,31 @@ def stability_plane(
     else:
         ax.legend(handles=shown, loc="upper right", fontsize=6.5)
     return figure
+
+
+_FINE = 240
+"""Intervals along an axis, about, on which the regions are drawn."""
+
+
+def _finer(values: Array) -> Array:
+    """Values with equal steps between every two, so that there are about `_FINE`."""
+    steps = -(-_FINE // (values.size - 1))
+    place = np.arange(steps * (values.size - 1) + 1) / steps
+    return np.interp(place, np.arange(values.size), values)
+
+
+def _bilinear(x: Array, y: Array, values: Array, along: Array, across: Array) -> Array:
+    """`values` (n, m) between; NaN only within cells of which a corner is NaN."""
+    for axis, (nodes, wanted) in enumerate(((x, along), (y, across))):
+        low = np.clip(np.searchsorted(nodes, wanted, "right") - 1, 0, max(nodes.size - 2, 0))
+        high = np.minimum(low + 1, nodes.size - 1)
+        span = np.where(high > low, nodes[high] - nodes[low], 1.0)
+        part = np.expand_dims((wanted - nodes[low]) / span, 1 - axis)
+        first, second = values.take(low, axis), values.take(high, axis)
+        # A node that is known stays so beside one that is not.
+        mixed = np.where(part < 1.0, (1.0 - part) * first, 0.0)
+        values = mixed + np.where(part > 0.0, part * second, 0.0)
+    return values
 
 
 def _borders(

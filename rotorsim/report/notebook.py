@@ -101,7 +101,7 @@ def _map(chart: StabilityMap) -> str:
         for name, size in chart.dataset.sizes.items()
         if name not in ("thermal_model", "radial_clearance", "speed", "mass") and size > 1
     ]
-    if extra:
+    if extra or min(chart.dataset.sizes["speed"], chart.dataset.sizes["mass"]) < 2:
         return f"<pre>{escape(repr(chart))}</pre>"
     drawn = [
         stability_map(

@@ -113,6 +113,31 @@ def test_map_regions_stand_where_the_decay_rates_say_and_differ_in_grey():
     assert "stable if heating is neglected, unstable with it" in labels
 
 
+def _grey_cells(figure):
+    """Pixels inside the axes in the colour of what was not computed."""
+    figure.canvas.draw()
+    picture = np.asarray(figure.canvas.buffer_rgba())[..., :3].astype(int)
+    box = figure.axes[0].get_window_extent()
+    height = picture.shape[0]
+    inside = picture[
+        height - int(box.y1) + 2 : height - int(box.y0) - 2, int(box.x0) + 3 : int(box.x1) - 2
+    ]
+    return (np.abs(inside - 0xBB).max(axis=-1) < 3).mean()
+
+
+def test_regions_of_a_coarse_map_meet_and_only_unknown_cells_are_grey():
+    speed, mass = np.linspace(300.0, 1500.0, 5), np.linspace(100.0, 3000.0, 30)
+    hot = 100.0 - 1e-9 * speed[:, None] ** 2 * mass * 60.0
+    cold = 100.0 - 1e-9 * speed[:, None] ** 2 * mass * 35.0
+    figure = plots.stability_map(speed, mass, cold, hot)
+    assert _grey_cells(figure) == 0.0
+    assert "not computed" not in [text.get_text() for text in figure.legends[0].get_texts()]
+    hot[2, 10] = np.nan
+    # Two of four intervals in speed, two of 29 in mass.
+    unknown = _grey_cells(plots.stability_map(speed, mass, cold, hot))
+    assert unknown == pytest.approx(0.5 * 2 / 29, rel=0.1)
+
+
 def test_map_of_one_model_knows_no_heating():
     labels = [t.get_text() for t in plots.stability_map(SPEED, MASS, COLD).legends[0].get_texts()]
     assert labels[:2] == ["stable", "unstable"]

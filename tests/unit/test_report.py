@@ -84,6 +84,12 @@ def words_of(page: str) -> str:
     return " ".join(" ".join(Checker(page).words).split())
 
 
+def test_a_map_of_one_mass_is_shown_as_text(results):
+    shown = stability_map(results.table, [900.0])._repr_html_()
+    assert shown.startswith("<pre>")
+    assert "critical_mass" in shown
+
+
 def test_the_page_is_whole_and_refers_to_nothing_outside(results, tmp_path):
     path = write_report(results, tmp_path / "new" / "report.html")
     page = path.read_text(encoding="utf-8")
