@@ -278,7 +278,7 @@ def _sample_progress(output: Output) -> Iterator[Callable[[int, int], None] | No
 
 def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> int:
     from ..pipeline.campbell import campbell_curves
-    from ..pipeline.stability import stability_curves
+    from ..pipeline.stability import doubts, stability_curves
     from ..pipeline.stability_figures import campbell_figures
     from ..stability import RigidShaft
     from .stability_results import branches_table, curve_row, modes_table, threshold_table
@@ -308,6 +308,8 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
         return [*tables, threshold_table(curves, shown) if shown else summary_table(curves)]
 
     work.finish(document, campbell_figures(shown, _title(scenario, table)), parts)
+    for text in doubts(curves) if scenario is None else ():  # coefficients from elsewhere
+        output.warn(text)
     return _report_failed(output, int((~table.converged).sum()), table.converged.size)
 
 
