@@ -23,7 +23,16 @@ if TYPE_CHECKING:
 
     from ..pipeline import StabilityCurve
 
-_COMPARED = ("load", "friction_force", "max_pressure")
+_COLUMNS = (
+    ("load kN", "load", 1e-3),
+    ("h_min um", "min_film_thickness", 1e6),
+    ("p_max MPa", "max_pressure", 1e-6),
+    ("loss kW", "power_loss", 1e-3),
+    ("flow L/min", "side_flow", 6e4),
+)
+"""Head, key and factor from SI of what isothermal and THD are compared by."""
+LEAST_WALL_SHARE = 0.005
+"""Of the heat through the walls, from which on it is said."""
 
 
 def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterator[RenderableType]:
@@ -31,7 +40,10 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
     counts = ", ".join(f"{count} {status}" for status, count in said["counts"].items())
     yield f"\n[bold]{said['title']}[/bold]: {sum(said['counts'].values())} film points, {counts}"
     if said["heating"]:
-        yield heating_table(said["heating"])
+        yield heating_table(said["heating"], rigid=not curves or not _flexible(curves[0]))
+        lines = "\n".join(walls_lines(said["heating"]))
+        if lines:
+            yield lines
     if curves:
         yield threshold_table(curves)
     if said["orbits"]:
@@ -41,46 +53,69 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
         yield f"Play it back: rotorsim view {path}"
 
 
-def heating_table(rows: Sequence[Mapping[str, Any]]) -> Table:
-    """Isothermal and THD at the highest speed, with what heating takes away."""
+def _flexible(curve: StabilityCurve) -> bool:
+    """Whether the rotor is not the rigid one of which a critical mass speaks."""
+    return bool(curve.rotor) and curve.mass is None
+
+
+def heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> Table:
+    """Isothermal and THD at the highest speed, with what heating changes.
+
+    Beside a rotor that is not rigid no critical mass is shown.
+    """
+    heads = [head for head, _, _ in _COLUMNS]
     table = grid(
         f"At {rows[0]['speed'] * RPM:.0f} rpm",
         "c um",
         "model",
-        "load N",
-        "friction N",
-        "p_max MPa",
+        *heads,
         "T_max C",
-        "M_crit kg",
+        *(["M_crit kg"] if rigid else []),
     )
     for row in rows:
-        models = [name for name in row if name not in ("radial_clearance", "speed")]
+        models = _models(row)
         for place, model in enumerate(models):
             one = row[model]
             table.add_row(
                 number(row["radial_clearance"] * 1e6) if place == 0 else "",
                 model,
-                number(one["load"]),
-                number(one["friction_force"]),
-                number(one["max_pressure"] / 1e6),
+                *(number(one[key] * factor) for _, key, factor in _COLUMNS),
                 number(one["max_temperature"] - ZERO_CELSIUS),
-                _mass(one),
+                *([_mass(one)] if rigid else []),
             )
         if {"isothermal", "thd"} <= set(models):
-            table.add_row("", "by heating", *_changes(row["isothermal"], row["thd"]))
+            table.add_row("", "by heating", *_changes(row["isothermal"], row["thd"], rigid=rigid))
         table.add_section()
     return table
+
+
+def walls_lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """What leaves through bush and shaft instead of with the oil, where that is anything."""
+    for row in rows:
+        for model in _models(row):
+            share = row[model]["wall_heat_share"]
+            if share is not None and math.isfinite(share) and abs(share) >= LEAST_WALL_SHARE:
+                yield (
+                    f"Through bush and shaft go {100.0 * share:.0f} % of the heat ({model}, "
+                    f"c = {number(row['radial_clearance'] * 1e6)} um)"
+                )
+
+
+def _models(row: Mapping[str, Any]) -> list[str]:
+    return [name for name in row if name not in ("radial_clearance", "speed")]
 
 
 def _mass(one: Mapping[str, Any]) -> str:
     if one["critical_mass"] is not None:
         return number(one["critical_mass"])
-    return "-" if one["stability"] is None else one["stability"].value.replace("_", " ")
+    said = "" if one["stability"] is None else one["stability"].value
+    return said.removeprefix("always_").replace("_", " ") or "-"
 
 
-def _changes(cold: Mapping[str, Any], hot: Mapping[str, Any]) -> list[str]:
-    texts = [_percent(cold[key], hot[key]) for key in _COMPARED]
-    return [*texts, "", _percent(cold["critical_mass"], hot["critical_mass"])]
+def _changes(cold: Mapping[str, Any], hot: Mapping[str, Any], *, rigid: bool) -> list[str]:
+    texts = [_percent(cold[key], hot[key]) for _, key, _ in _COLUMNS]
+    mass = [_percent(cold["critical_mass"], hot["critical_mass"])] if rigid else []
+    return [*texts, "", *mass]
 
 
 def _percent(cold: float | None, hot: float | None) -> str:

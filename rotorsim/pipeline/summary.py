@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from .wording import verdict_at, verdict_over_range
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -101,12 +103,15 @@ def heating_effect(
     Returns
     -------
     list of dict
-        ``radial_clearance``, ``speed``, and for each model's name its load, friction, peak
-        pressure and temperature, critical mass and first threshold speed.
+        ``radial_clearance``, ``speed``, and for each model's name what the film carries and costs
+        there, the critical mass, and of the scenario's rotor its ``verdict`` (``stable``,
+        ``unstable`` or None), ``verdict_over_range`` (``stable throughout``, ``unstable
+        throughout``, ``changes`` or None) and ``threshold_speeds``; ``threshold_speed`` is the
+        first of them.
     """
     top = max((point.speed for point in points), default=0.0)
-    thresholds = {
-        (curve.choices["thermal_model"], curve.choices["radial_clearance"]): curve.threshold_speeds
+    known = {
+        (curve.choices["thermal_model"], curve.choices["radial_clearance"]): curve
         for curve in curves
     }
     rows: dict[float, dict[str, Any]] = {}
@@ -116,16 +121,25 @@ def heating_effect(
         row = rows.setdefault(
             point.radial_clearance, {"radial_clearance": point.radial_clearance, "speed": top}
         )
-        found = thresholds.get((point.thermal_model, point.radial_clearance), ())
+        curve = known.get((point.thermal_model, point.radial_clearance))
+        found = () if curve is None else curve.threshold_speeds
+        heat = point.heat_balance
         row[point.thermal_model] = {
             "status": point.status,
             "load": point.load,
             "friction_force": point.friction_force,
+            "power_loss": point.power_loss,
+            "side_flow": point.side_flow,
             "max_pressure": point.max_pressure,
             "max_temperature": point.max_temperature,
+            "outlet_temperature": point.outlet_temperature,
+            "wall_heat_share": None if heat is None else heat.wall_share,
             "min_film_thickness": point.min_film_thickness,
             "critical_mass": point.critical_mass,
             "stability": point.stability,
+            "verdict": None if curve is None else verdict_at(curve),
+            "verdict_over_range": None if curve is None else verdict_over_range(curve),
+            "threshold_speeds": list(found),
             "threshold_speed": found[0] if found else None,
         }
     return list(rows.values())

@@ -86,20 +86,48 @@ def curve_title(curve: StabilityCurve) -> str:
     return ", ".join([str(curve.choices["thermal_model"]), *given, *extra])
 
 
+def verdict_over_range(curve: StabilityCurve) -> str | None:
+    """``stable throughout``, ``unstable throughout``, ``changes``.
+
+    None without a rotor, and where a speed is not known.
+    """
+    if curve.threshold_speeds:
+        return "changes"
+    rates = [] if curve.decay_rate is None else [float(rate) for rate in curve.decay_rate]
+    if not rates or not all(map(math.isfinite, rates)):
+        return None
+    if min(rates) > 0.0:
+        return "stable throughout"
+    return "unstable throughout" if max(rates) <= 0.0 else "changes"
+
+
 def thresholds_text(curve: StabilityCurve) -> str:
-    """Threshold speeds [rpm], or which verdict holds throughout."""
+    """Threshold speeds [rpm], or which verdict holds over which speeds."""
     if curve.threshold_speeds:
         return ", ".join(f"{speed * RPM:.0f}" for speed in curve.threshold_speeds)
     if curve.decay_rate is None:
         return "-"
-    known = [float(rate) for rate in curve.decay_rate if math.isfinite(rate)]
-    if not known:
+    known = [
+        (float(speed) * RPM, float(rate))
+        for speed, rate in zip(curve.speed, curve.decay_rate, strict=True)
+        if math.isfinite(rate)
+    ]
+    signs = {rate > 0.0 for _, rate in known}
+    if len(signs) != 1:
         return "-"
-    return "none: stable throughout" if min(known) > 0.0 else "none: unstable throughout"
+    word, (first, last) = "stable" if signs.pop() else "unstable", (known[0][0], known[-1][0])
+    if len(known) < len(curve.speed):
+        return f"none: {word} at the {len(known)} of {len(curve.speed)} speeds known"
+    return f"none: {word}, {first:.0f} to {last:.0f} rpm" if last > first else f"none: {word}"
+
+
+def verdict_at(curve: StabilityCurve) -> str | None:
+    """``stable`` or ``unstable`` at the highest speed; None where that is not known."""
+    if curve.decay_rate is None or math.isnan(curve.decay_rate[-1]):
+        return None
+    return "stable" if curve.decay_rate[-1] > 0.0 else "unstable"
 
 
 def verdict_at_top(curve: StabilityCurve) -> str:
     """Whether the rotor is stable at the highest speed; a dash where that is not known."""
-    if curve.decay_rate is None or math.isnan(curve.decay_rate[-1]):
-        return "-"
-    return "stable" if curve.decay_rate[-1] > 0.0 else "unstable"
+    return verdict_at(curve) or "-"

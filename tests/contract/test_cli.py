@@ -357,6 +357,15 @@ def test_run_does_the_whole_job(tiny, tmp_path):
         "figures",
         "logs",
     }
+    (heating,) = said["heating"]
+    for model in ("isothermal", "thd"):
+        one = heating[model]
+        stable = one["critical_mass"] > 1200.0
+        assert one["verdict"] == ("stable" if stable else "unstable")
+        assert one["power_loss"] == pytest.approx(one["friction_force"] * 15000 * np.pi / 30 * 0.05)
+        crossed = one["threshold_speeds"]
+        assert (one["verdict_over_range"] == "changes") == bool(crossed)
+        assert one["threshold_speed"] == (crossed[0] if crossed else None)
     kinds = [(orbit["thermal_model"], orbit["kind"]) for orbit in said["orbits"]]
     assert kinds == [
         ("isothermal", "constant speed"),
@@ -374,6 +383,10 @@ def test_run_shows_a_summary_that_fits_the_terminal(tiny, here):
     assert max(map(len, done.stdout.splitlines())) <= 100
     for words in ("8 film points, 8 converged", "by heating", "threshold rpm", "tiny.rrd"):
         assert words in done.stdout
+    for column in ("h_min um", "loss kW", "flow L/min", "M_crit kg"):
+        assert column in done.stdout
+    table = done.stdout.split("At 15000 rpm")[1].split("Stability")[0]
+    assert max(map(len, table.splitlines())) <= 90
 
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
