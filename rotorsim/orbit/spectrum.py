@@ -119,10 +119,16 @@ def _window(orbit: Orbit) -> tuple[Array, ComplexArray, Array]:
 
 
 def spectrum(orbit: Orbit) -> Spectrum:
-    """Two-sided amplitude spectrum of the whole record, mean removed (Hann window)."""
+    """Two-sided amplitude spectrum of the whole record, drift removed (Hann window).
+
+    The drift is a straight line: in a run through the speeds the static position moves, which is no
+    vibration of low frequency.
+    """
     _, z, weights = _window(orbit)
     half = z.size // 2
-    lines = np.fft.fft(weights * (z - np.sum(weights * z)))
+    along = np.linspace(-1.0, 1.0, z.size)
+    slope = np.sum(weights * along * z) / np.sum(weights * along**2)
+    lines = np.fft.fft(weights * (z - np.sum(weights * z) - slope * along))
     order = np.arange(half) * orbit.samples_per_revolution / z.size
     forward, backward = np.abs(lines[:half]), np.abs(np.roll(lines[::-1], 1)[:half])
     return Spectrum(order, order * float(np.mean(orbit.speed)), forward, backward)

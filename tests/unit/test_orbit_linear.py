@@ -397,3 +397,20 @@ def test_a_slow_load_leaves_a_long_steady_part():
     assert found.status is OrbitStatus.PERIODIC
     assert found.steady_from is not None
     assert found.steady_from <= orbit.t.size // 2
+
+
+def test_a_drift_is_no_vibration():
+    """A circle of 1 um at half the shaft's frequency whose centre moves by 20 um."""
+    count = 16 * 64
+    turns = np.arange(count) / 64
+    zero = np.zeros(count)
+    z = 1e-6 * np.exp(1j * np.pi * turns) + 20e-6 * turns / turns[-1]
+    film = constant_coefficients(1e7 * np.eye(2), 1e4 * np.eye(2))
+    quiet = simulate_linear(film, 10.0, 900.0, 1e-4, revolutions=16).part(0, count)
+    drifting = dataclasses.replace(
+        quiet, x=z.real.copy(), y=z.imag.copy(), vx=zero, vy=zero, angle=2.0 * np.pi * turns
+    )
+    found = spectrum(drifting)
+    assert found.order[np.argmax(found.forward)] == pytest.approx(0.5)
+    assert found.forward.max() == pytest.approx(1e-6, rel=0.02)
+    assert found.forward[found.order < 0.3].max() < 0.1e-6
