@@ -37,6 +37,7 @@ from .stability_options import (
     XValuesOption,
     YOption,
     YValuesOption,
+    axis_named,
     axis_values,
     held_values,
     wanted_rotor,
@@ -145,12 +146,13 @@ class _Work:
                 self.output.show(*(str(path) for path in document["files"]))
 
 
-def _axes(texts: dict[str, tuple[Axis | None, str | None]]) -> dict[str, list[float] | None]:
+def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[float] | None]:
     """Values of both axes by dimension; None: left to the map."""
     found: dict[str, list[float] | None] = {}
-    for option, (axis, values) in texts.items():
-        if axis is None:
+    for option, (text, values) in texts.items():
+        if text is None:
             raise InputError("a map needs both --x and --y", key=option)
+        axis = axis_named(text, option)
         name = AXES[axis][0]
         if name in found:
             raise InputError("must differ from --x", key=option, value=axis.value)
@@ -223,15 +225,16 @@ def _show_tolerances(
     texts: list[str] | None,
     samples: int | None,
 ) -> int:
-    from ..interchange import is_table
     from ..pipeline.stability_figures import tolerance_figure
     from ..pipeline.tolerances import study_tolerances
-    from ..scenario import load_scenario
     from .stability_results import study_document, study_tables
 
-    if is_table(source):
-        raise InputError("needs the scenario: films are solved", key="--tolerances", source=source)
-    scenario = load_scenario(source)
+    scenario, _ = _source(work.output, source)
+    if scenario is None:
+        raise InputError(
+            "films are solved, and this table does not say how: give the scenario in its place",
+            key="--tolerances", source=source,
+        )  # fmt: skip
     extra = [name for name in held if name not in ("speed", "radial_clearance")]
     if extra:
         raise InputError("goes with a map; set it in the scenario", key=extra[0])

@@ -45,6 +45,8 @@ AXES = {
     Axis.SUPPLY_TEMPERATURE: ("supply_temperature", "temperature", "40 degC"),
 }
 """Dimension of the table, kind of quantity, example."""
+_SHORT = {"clearance": "radial_clearance", "applied_load": "load"}
+"""Other names of inputs, to those of a scenario's ``[tolerances]``."""
 _MOST_VALUES = 1000
 
 SourceArgument = Annotated[
@@ -118,11 +120,23 @@ ModesOption = Annotated[
 
 def _axis_option(letter: str) -> object:
     return Annotated[
-        Axis | None,
+        str | None,
         typer.Option(
-            f"--{letter}", help=f"Map: {letter} axis.", show_default=False, rich_help_panel=_MAP
+            f"--{letter}",
+            metavar="INPUT",
+            help=f"Map: {letter} axis, one of {', '.join(Axis)}.",
+            show_default=False,
+            rich_help_panel=_MAP,
         ),
     ]
+
+
+def axis_named(text: str, key: str) -> Axis:
+    """Axis by its name here, in a table or in a scenario: ``clearance``, ``radial_clearance``."""
+    for axis, (dimension, *_) in AXES.items():
+        if text.replace("_", "-") in (axis.value, dimension.replace("_", "-")):
+            return axis
+    raise InputError(f"must be one of {', '.join(Axis)}", key=key, value=text)
 
 
 def _values_option(letter: str) -> object:
@@ -311,6 +325,8 @@ def wanted_tolerances(
     found = dict(scenario.tolerances.spreads) if scenario.tolerances is not None else {}
     for text in texts or ():
         name, sign, value = (part.strip() for part in text.partition("="))
+        name = name.replace("-", "_")
+        name = _SHORT.get(name, name)
         if not sign or name not in KINDS:
             raise InputError(
                 f"must be NAME=SPREAD, NAME one of {', '.join(KINDS)}",

@@ -177,6 +177,13 @@ def plane_of_table(
         raise InputError('is missing: a verdict needs it; give for example "900 kg"', key="mass")
     chosen = {name: value for name, value in (held or {}).items() if name in table.choices}
     table = table.select(**chosen)
+    for name in (x, y):
+        if name in table.choices and table.dataset.sizes[name] < 2:
+            raise InputError(
+                "has one value in this table, which makes no axis; give the scenario in its place: "
+                "it can be solved at others",
+                key=name, value=float(table.dataset[name].values[0]),
+            )  # fmt: skip
     size, failed = table.converged.size, int((~table.converged).sum())
     for name in (x, y):
         along = table.dataset[name].values if name in table.choices else ()
@@ -191,6 +198,8 @@ def plane_of_table(
     for name, along in axes.items():
         if name not in (x, y) and along.size != 1:
             raise InputError("has several values: say which", key=name)
+        if name in (x, y) and along.size < 2:
+            raise InputError("an axis needs two values or more", key=name, value=float(along[0]))
     chart = stability_map(table, axes["mass"], axes["speed"])
     dataset = chart.plane(x, y)
     kept = {name: float(dataset[name]) for name in DIMENSIONS if name in dataset.coords

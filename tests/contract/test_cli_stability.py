@@ -261,6 +261,42 @@ def test_tolerances_of_the_scenario_and_of_the_command_line(here):
     assert Path("figures/tolerances.svg").exists()
 
 
+def test_inputs_go_by_both_of_their_names(here):
+    found = []
+    for x, y, spread in (
+        ("clearance", "load", "radial_clearance=4 um"),
+        ("radial_clearance", "applied_load", "clearance=4 um"),
+    ):
+        done = here(
+            "stability", "small.toml", "--x", x, "--y", y, "--x-values", "90 um, 110 um",
+            "--y-values", "8 kN, 12 kN", "--speed", "12000 rpm", "--cells", "0", "-m",
+            "isothermal", "--workers", "1", "--json",
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        said = strict(done.stdout)["map"]
+        done = here(
+            "stability", "small.toml", "--tolerance", spread, "-m", "isothermal", "--workers", "1",
+            "--json",
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        tolerances = strict(done.stdout)["tolerances"]
+        assert tolerances["radial_clearance"]["spread"] == pytest.approx(4e-6)
+        found.append((said, tolerances))
+    assert found[0] == found[1]
+
+
+def test_a_table_brings_its_scenario_to_the_tolerances(here):
+    solved = here("table", "small.toml", "--workers", "1", "-o", "small.nc", "-q")
+    assert solved.returncode == 0, solved.stderr
+    said = []
+    for source in ("small.toml", "small.nc"):
+        done = here("stability", source, "--tolerances", "-m", "isothermal", "--workers", "1",
+                    "--json")  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        said.append(strict(done.stdout))
+    assert said[0] == said[1]
+
+
 def refuse(done: subprocess.CompletedProcess, words: list[str]) -> None:
     assert done.returncode == 2, done.stdout + done.stderr
     assert "Traceback" not in done.stderr
@@ -340,7 +376,13 @@ TABLE = str(DATA / "ross_bearing.csv")
         ((TABLE, "--x", "speed", "--y", "mass", "--x-values", "1 rpm, 2 rpm"), ["speed", "209"]),
         ((TABLE, "--x-values", "1 rpm"), ["--x-values", "--x"]),
         ((TABLE, "--speed", "100 rpm"), ["--speed", "--x"]),
-        ((TABLE, "--tolerances"), ["--tolerances", "scenario"]),
+        ((TABLE, "--tolerances"), ["--tolerances", "give the scenario"]),
+        ((TABLE, "--x", "radius", "--y", "mass"), ["--x", "radius", "clearance, load"]),
+        (
+            (TABLE, "--x", "clearance", "--y", "speed", "--mass", "9 kg"),
+            ["radial_clearance", "one value", "scenario"],
+        ),
+        ((TABLE, "--x", "speed", "--y", "mass", "--x-values", "4000 rpm"), ["speed", "two values"]),
         (("small.toml", "--tolerance", "radius=1 %"), ["--tolerance", "radial_clearance"]),
         (("small.toml", "--tolerance", "viscosity=1 Pa*s"), ["viscosity", "10 %"]),
         (("small.toml", "--tolerances", "--model", "adiabatic"), ["adiabatic", "thd"]),

@@ -8,7 +8,8 @@ from rotorsim.errors import InputError, ScenarioError
 from rotorsim.model import LoadTarget, MeshSize
 from rotorsim.pipeline.film_axes import changed, tabulate_over
 from rotorsim.pipeline.tolerances import FilmThreshold, study_tolerances, tolerances_of
-from rotorsim.scenario import Scenario
+from rotorsim.scenario import Scenario, ToleranceSettings
+from rotorsim.scenario.tolerances import parse_spread
 from rotorsim.solver import solve_case
 from rotorsim.stability import RigidShaft, rigid_threshold, stability_map, threshold_speeds
 
@@ -174,9 +175,10 @@ def test_spreads_are_read_and_refused():
     assert found["load"].spread == pytest.approx(200.0)
     assert found["viscosity"].nominal == 1.0
     assert found["supply_temperature"].spread == pytest.approx(3.0)
-    text = PLAIN + TOLERANCES.replace('"8 um"', '{ spread = "30 %", distribution = "normal" }')
+    # As --tolerance gives it; the scenario's own check comes before.
+    wide = parse_spread({"spread": "30 %", "distribution": "normal"}, "radial_clearance")
     with pytest.raises(InputError, match="below zero"):
-        tolerances_of(case, Scenario.from_text(text).tolerances)
+        tolerances_of(case, ToleranceSettings({"radial_clearance": wide}))
 
 
 @pytest.mark.parametrize(
