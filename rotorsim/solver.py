@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import check_number, refuse_path
 from .checks import regime_warnings
 from .errors import InputError
 from .film.banded import NoFilmError, SingularFilmError
 from .film.flow import film_flow
 from .film.following import following_stiffness
-from .film.heat import heat_totals, wall_temperatures
+from .film.heat import heat_totals, wall_temperatures, with_groove_oil
 from .film.linearized import linearize
 from .film.losses import friction_force, peak, side_flow
 from .film.solution import FilmSolution, WarmStart, solve_film
@@ -57,8 +58,15 @@ def solve(
     Raises
     ------
     InputError
-        Something is left open, or not positive.
+        Something is left open, not positive, or no number; or `scenario` is a file's name.
     """
+    refuse_path(scenario)
+    for name, value, unit in (
+        ("speed", speed, "rad/s"),
+        ("radial_clearance", radial_clearance, "m"),
+    ):
+        if value is not None:
+            check_number(value, name, unit)
     models = tuple(str(m) for m in scenario.thermal_models)
     case = scenario.case(
         _only("radial_clearance", radial_clearance, scenario.radial_clearances),
@@ -107,6 +115,7 @@ def solve_case(
     InputError
         The speed is not positive, or the mesh cannot hold the geometry.
     """
+    check_number(speed, "speed", "rad/s")
     if not (math.isfinite(speed) and speed > 0.0):
         raise InputError("must be above 0 (rad/s)", key="speed", value=speed)
     try:
@@ -299,7 +308,12 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
         viscosity = np.full(shape, float(problem.lubricant.viscosity(supply)))
         bush, shaft = np.full(mesh.shape, supply), supply
     else:
-        temperature, viscosity = thermal.heat.temperature, thermal.viscosity
+        temperature = with_groove_oil(problem, thermal.heat.temperature, thermal.inlet_temperature)
+        viscosity = np.where(
+            (mesh.supply >= 0)[:, :, None],
+            problem.lubricant.viscosity(temperature),
+            thermal.viscosity,
+        )
         bush, shaft = thermal.heat.bush, thermal.heat.shaft
 
     def whole(field: Array) -> Array:

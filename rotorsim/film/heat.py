@@ -218,6 +218,20 @@ def _wells(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
     return wells
 
 
+def with_groove_oil(problem: FilmProblem, temperature: Array, inlet_temperature: Array) -> Array:
+    """Film temperature (n, m, k) with that of the oil which each groove hands on in its cells.
+
+    The film's equations know nothing of a groove's inside; for what is shown and told.
+    """
+    supply, filled = problem.mesh.supply, temperature.copy()
+    for number in range(len(problem.bearing.grooves)):
+        inside = supply == number
+        behind = np.roll(inside, 1, axis=0) & ~inside
+        if behind.any():
+            filled[inside] = float(inlet_temperature[WEST][behind].mean())
+    return filled
+
+
 def dissipated_power(energy: EnergyProblem) -> float:
     """Power that the film turns into heat, over the meshed part [W]."""
     # Summed over the layers: int (z - G)^2/mu = F_2, int (z - G)/mu = 0, int 1/mu = F_0.

@@ -199,3 +199,23 @@ def test_thermal_film_of_a_constant_viscosity_is_the_isothermal_one():
     np.testing.assert_allclose(hot.stiffness, plain.stiffness, rtol=1e-8)
     np.testing.assert_allclose(hot.damping, plain.damping, rtol=1e-8)
     assert hot.max_temperature > plain.max_temperature + 5.0
+
+
+def test_a_groove_shows_the_oil_that_it_hands_on():
+    """Between the supply's temperature and that of the oil which arrives; the film goes on there."""
+    case = thermal_case(bearing=BEARINGS["grooved"], inlet=InletModel.MIXING)
+    point, _ = solve_case(case, SPEED, keep_fields=True)
+    assert point.converged
+    assert point.fields is not None
+    field = point.fields.temperature.mean(axis=2)[:, point.fields.y.size // 2]
+    theta = np.mod(point.fields.theta, 2.0 * math.pi)
+    for groove in case.bearing.grooves:
+        away = np.mod(theta - groove.center + math.pi, 2.0 * math.pi) - math.pi
+        inside = np.abs(away) < 0.5 * groove.extent
+        order = np.argsort(away)
+        nearest = order[np.searchsorted(away[order], [-0.5 * groove.extent, 0.5 * groove.extent])]
+        arriving = field[order[np.searchsorted(away[order], -0.5 * groove.extent) - 1]]
+        shown = field[inside]
+        assert np.ptp(shown) < 1e-9
+        assert case.thermal.supply_temperature < shown[0] < arriving
+        assert field[nearest[1]] == pytest.approx(shown[0], abs=2.0)
