@@ -9,6 +9,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .arguments import refuse_path
 from .chunks import Chunk, along_speed, result_or_failure, solve_chunk
 from .errors import InputError
 from .journal import Journal
@@ -61,8 +62,10 @@ def tabulate(
     Raises
     ------
     InputError
-        `workers` below 1, a `resume` file of another kind, or a case that cannot be meshed.
+        `workers` below 1, a `resume` file of another kind, a case that cannot be meshed, or a
+        file's name in place of the scenario.
     """
+    refuse_path(scenario)
     cases, speeds = list(scenario.cases()), [float(speed) for speed in scenario.speeds]
     points = sweep_points(
         cases, speeds, executor=executor, workers=workers, progress=progress, resume=resume

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ValidationError
 
+from ..arguments import check_number
 from ..errors import InputError, ScenarioError
 from ..model import (
     Bearing,
@@ -24,6 +25,7 @@ from ..model import (
     ThermalSettings,
 )
 from ..model.rotor import Rotor
+from ..shipped import shipped_scenarios
 from . import build
 from .document import parse_toml, read_text
 from .messages import as_written, dotted, location, scenario_error, shown
@@ -170,6 +172,8 @@ class Scenario:
     def _clearance(self, wanted: float | None) -> float:
         if wanted is None and len(self.radial_clearances) == 1:
             return self.radial_clearances[0]
+        if wanted is not None:
+            check_number(wanted, "radial_clearance", "m")
         for clearance in self.radial_clearances:
             if wanted is not None and math.isclose(clearance, wanted, rel_tol=1e-6):
                 return clearance
@@ -201,11 +205,25 @@ class Scenario:
 def load_scenario(path: str | Path) -> Scenario:
     """Read and validate a scenario file.
 
+    Parameters
+    ----------
+    path : str or Path
+        A file, or, where there is none of that name, the name of a shipped scenario (see
+        `rotorsim.shipped_scenarios`), as on the command line.
+
     Raises
     ------
     ScenarioError
         The file cannot be read or an entry is wrong: file, key, value and what is allowed.
+
+    Examples
+    --------
+    >>> load_scenario("quick").source.name
+    'quick.toml'
     """
+    shipped = shipped_scenarios().get(str(path))
+    if shipped is not None and not Path(path).exists():
+        path = shipped
     return Scenario.from_text(read_text(path), source=path)
 
 

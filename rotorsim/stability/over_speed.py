@@ -92,6 +92,20 @@ def _above_zero(key: str, value: float) -> None:
         raise InputError("must be above 0", key=key, value=value)
 
 
+def _check_order(table: object, rotor: object) -> None:
+    """Refuse the two in each other's place, or a mass in place of a rotor."""
+    if not isinstance(table, CoefficientTable):
+        raise InputError(
+            "must be a CoefficientTable, and the rotor comes after it", key="table",
+            value=type(table).__name__,
+        )  # fmt: skip
+    if not hasattr(rotor, "state_matrix"):
+        raise InputError(
+            "must be a rotor: RigidShaft(mass), JeffcottShaft or GeneralRotor", key="rotor",
+            value=type(rotor).__name__,
+        )  # fmt: skip
+
+
 def _matrix_of(
     table: CoefficientTable, rotor: RotorOnFilm, choices: dict[str, object]
 ) -> Callable[[float], Array]:
@@ -140,6 +154,7 @@ def rotor_modes(
     **choices
         As for `CoefficientTable.select`.
     """
+    _check_order(table, rotor)
     wanted = converged_speeds(table, **choices) if speed is None else speed
     return track_modes(_matrix_of(table, rotor, choices), wanted)
 
@@ -157,7 +172,13 @@ def rotor_thresholds(
         Points looked at in every interval of the table.
     **choices
         As for `CoefficientTable.select`.
+
+    Raises
+    ------
+    InputError
+        Table and rotor stand in each other's place.
     """
+    _check_order(table, rotor)
     knots = table.speeds
     parts = np.arange(subdivisions) / subdivisions
     grid = np.append((knots[:-1, None] + np.diff(knots)[:, None] * parts).ravel(), knots[-1])

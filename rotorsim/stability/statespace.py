@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import control
 import numpy as np
 
+from ..arguments import check_number
 from ..errors import InputError
 from .jeffcott import jeffcott_matrices
 from .matrices import state_matrix
@@ -36,8 +37,9 @@ def state_space(coefficients: Coefficients, mass: float, name: str = "rotor") ->
     Raises
     ------
     InputError
-        The mass is not above zero.
+        The mass is no number, or not above zero.
     """
+    check_number(mass, "mass", "kg")
     _positive(mass, "mass")
     a = state_matrix(coefficients.stiffness, coefficients.damping, mass)
     b = np.zeros((4, 2))

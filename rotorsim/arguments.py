@@ -1,0 +1,45 @@
+"""Arguments of the Python interface that are easily mistaken for one another."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .errors import InputError
+
+_HOW = {
+    "rad/s": "; from rpm: rpm * 3.14159 / 30",
+    "m": "; from um: um * 1e-6",
+    "kg": "",
+}
+
+
+def refuse_path(value: object, key: str = "scenario") -> None:
+    """Refuse a file's name where the `Scenario` read from it is needed.
+
+    Raises
+    ------
+    InputError
+        `value` is a text or a path.
+    """
+    if isinstance(value, (str, Path)):
+        raise InputError(
+            "must be a Scenario, not the name of its file: rotorsim.load_scenario(file) reads it",
+            key=key,
+            value=value,
+        )
+
+
+def check_number(value: object, key: str, unit: str) -> None:
+    """Refuse a text, "15000 rpm" for example, where a plain number in SI is needed.
+
+    Raises
+    ------
+    InputError
+        `value` is no number.
+    """
+    if isinstance(value, (str, bytes)) or not hasattr(value, "__float__"):
+        raise InputError(
+            f"must be a plain number in {unit}, without quotes{_HOW.get(unit, '')}",
+            key=key,
+            value=value if isinstance(value, (str, bytes)) else type(value).__name__,
+        )

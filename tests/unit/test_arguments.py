@@ -1,0 +1,70 @@
+"""Arguments of the Python interface in each other's place, or with units, are refused by name."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scenario_texts import BEARING, CONSTANT_OIL
+
+import rotorsim as rs
+from rotorsim.errors import InputError
+from rotorsim.scenario import Scenario
+from rotorsim.stability import RigidShaft, rotor_modes, rotor_thresholds
+from rotorsim.table import Coefficients
+
+SCENARIO = Scenario.from_text(
+    f"{BEARING}\n{CONSTANT_OIL}\n[film]\nmesh = {{ circumferential = 32, axial = 8 }}\n"
+    '[operating]\nspeed = ["6000 rpm", "9000 rpm"]\nload = "10 kN"\n'
+)
+FILM = Coefficients(1e8 * np.eye(2), 1e5 * np.eye(2), 1000.0)
+
+
+@pytest.mark.parametrize("call", [rs.solve, rs.tabulate])
+@pytest.mark.parametrize("name", ["x.toml", Path("x.toml")])
+def test_a_file_is_not_a_scenario(call, name) -> None:
+    with pytest.raises(InputError, match=r"^scenario: .*load_scenario.*\(found: 'x\.toml'\)"):
+        call(name)
+
+
+def test_numbers_of_the_film_have_no_units() -> None:
+    with pytest.raises(InputError, match=r"^speed: .*rad/s.*rpm \* .*\(found: '15000 rpm'\)"):
+        rs.solve(SCENARIO, speed="15000 rpm")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"^speed: .*rad/s"):
+        rs.solve_case(SCENARIO.case(), "15000 rpm")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"^radial_clearance: .*in m.*um \* 1e-6"):
+        rs.solve(SCENARIO, speed=900.0, radial_clearance="100 um")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"^radial_clearance: .*in m"):
+        SCENARIO.case("100 um")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("mass", ["1200 kg", FILM, None])
+def test_a_mass_is_a_number(mass) -> None:
+    with pytest.raises(InputError, match=r"^mass: must be a plain number in kg"):
+        rs.state_space(FILM, mass)
+
+
+@pytest.mark.parametrize("call", [rotor_thresholds, rotor_modes])
+def test_the_table_comes_before_the_rotor(call) -> None:
+    table = rs.tabulate(SCENARIO, workers=1)
+    with pytest.raises(InputError, match=r"^table: .*the rotor comes after.*'RigidShaft'"):
+        call(RigidShaft(1200.0), table)
+    with pytest.raises(InputError, match=r"^rotor: .*RigidShaft\(mass\).*'float'"):
+        call(table, 1200.0)
+    call(table, RigidShaft(1200.0))
+
+
+def test_shipped_scenarios_are_loaded_by_name(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    shipped = rs.load_scenario("quick")
+    assert shipped.source == rs.shipped_scenarios()["quick"]
+    mine = Path("quick")  # a file of that name comes first
+    mine.write_text('title = "mine"\n' + SCENARIO.text, encoding="utf-8")
+    assert rs.load_scenario("quick").title == "mine"
+
+
+def test_paths_in_messages_are_plain() -> None:
+    assert str(InputError("is no rotor", key="--rotor", value=Path("rotor.npz"))) == (
+        "--rotor: is no rotor (found: 'rotor.npz')"
+    )
