@@ -97,6 +97,8 @@ _BY_SUFFIX = {
     ".pdf": FileKind.PICTURE,
     ".json": FileKind.JSON,
 }
+KNOWN_SUFFIXES = frozenset(_BY_SUFFIX)
+"""Endings of names that tell a kind other than a scenario."""
 _SCENARIO_TABLE = re.compile(
     rb"^[ \t]*\[+(bearing|lubricant|operating)\b|^[ \t]*(bearing|lubricant|operating)\.", re.M
 )

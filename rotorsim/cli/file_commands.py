@@ -9,11 +9,11 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from ..file_kinds import HEAD, FileKind, recognise, sentence
+from ..file_kinds import HEAD, KNOWN_SUFFIXES, FileKind, recognise, sentence
 from ..shipped import shipped_scenarios
 from .inputs import check_file, check_folder
 from .options import TableArgument
-from .output import DONE, Output
+from .output import DONE, Output, as_typed
 
 
 class Profile(StrEnum):
@@ -32,6 +32,23 @@ class ExportFormat(StrEnum):
     MAT = "mat"
     TXT = "txt"
     NC = "nc"
+
+
+_OPTION_OF = {
+    "operating.load": "--load",
+    "operating.eccentricity_ratio": "--eccentricity",
+    "lubricant.iso_vg": "--iso-vg",
+}
+"""Options of `new` by the entries that they fill."""
+_OTHER_SUFFIXES = {*(f".{end}" for end in ("md", "yaml", "yml", "ini", "cfg", "xml", "docx"))} | {
+    *KNOWN_SUFFIXES
+}
+"""Endings that mean another kind of file (a name may hold dots: "pump 1.2")."""
+
+
+def shipped_names(incomplete: str) -> list[str]:
+    """Shipped scenarios whose names begin so, for the shell's completion."""
+    return [name for name in shipped_scenarios() if name.startswith(incomplete)]
 
 
 def export_formats(text: str) -> list[ExportFormat]:
@@ -84,7 +101,10 @@ def new(
     example: Annotated[
         str | None,
         typer.Option(
-            "--example", metavar="NAME", help="Start from a shipped scenario instead, e.g. dal."
+            "--example",
+            metavar="NAME",
+            help="Start from a shipped scenario instead, e.g. dal.",
+            autocompletion=shipped_names,
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
@@ -97,6 +117,13 @@ def new(
     from ..scenario import Scenario
 
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    if Path(name).suffix.lower() in _OTHER_SUFFIXES:
+        raise InputError(
+            f'a scenario ends in .toml; write for example "{Path(name).with_suffix(".toml")}", or '
+            "leave the ending away",
+            key="NAME",
+            value=name,
+        )
     if not path.name.removesuffix(".toml").strip("."):
         raise InputError("needs a name", key="NAME", value=name)
     if path.exists() and not force:
@@ -108,13 +135,19 @@ def new(
         text = _shipped_text(example)
     else:
         raise InputError("has its own bore, load and oil: give no further choice", key="--example")
-    loaded = Scenario.from_text(text, source=path)
+    try:
+        loaded = Scenario.from_text(text, source=path)
+    except InputError as error:
+        # The file is not there yet: what is wrong came from an option.
+        if error.key not in _OPTION_OF:
+            raise
+        raise InputError(error.message, key=_OPTION_OF[error.key], value=error.value) from None
     write_text(path, text)
     output.document({"scenario": path, "title": loaded.title})
     output.show(
         f"{path} is written. Put your numbers in, then:\n"
-        f"  rotorsim check {path}\n"
-        f"  rotorsim run {path}",
+        f"  rotorsim check {as_typed(path)}\n"
+        f"  rotorsim run {as_typed(path)}",
     )
     return DONE
 

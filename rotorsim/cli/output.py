@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import functools
 import os
+import shlex
+import subprocess
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -15,6 +17,8 @@ from ..errors import InputError, RotorsimError
 from ..records import strict_json
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from rich.console import Console, RenderableType
 
 DONE = 0
@@ -27,6 +31,11 @@ INTERRUPTED = 130
 """Stopped by the user (the shells' code for it)."""
 
 _TABLE_WIDTH = 100
+
+
+def as_typed(path: Path) -> str:
+    """Path as it must be typed after a command: in quotes where it holds spaces and the like."""
+    return subprocess.list2cmdline([str(path)]) if os.name == "nt" else shlex.quote(str(path))
 
 
 @dataclass

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -108,6 +109,8 @@ def test_useless_files_are_refused_by_name(command, kind, name, nonsense, tmp_pa
         ("new", ""),
         ("new", ".."),
         ("new", "file/x"),
+        ("new", "x.txt"),
+        ("new", "x.nc"),
         ("new", "x", "--iso-vg", "0"),
         ("new", "x", "--iso-vg", "nan"),
         ("new", "x", "--eccentricity", "1"),
@@ -137,6 +140,40 @@ def test_shipped_scenarios_are_found_by_name(nonsense):
     assert nonsense("new", "mine", "--example", "quick", "--quiet").returncode == 0
     shipped = (ROOT / "scenarios" / "quick.toml").read_text(encoding="utf-8")
     assert Path("mine.toml").read_text(encoding="utf-8") == shipped
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--load", "ten"), "error: --load: must be a force"),
+        (("--load", "18 t"), "error: --load: "),
+        (("--eccentricity", "1.5"), "error: --eccentricity: must be below 1"),
+        (("--iso-vg", "3"), "error: --iso-vg: must be above 5"),
+    ],
+)
+def test_new_names_the_option_and_no_file_that_is_not_there(words, said, nonsense):
+    done = nonsense("new", "mine", *words)
+    assert done.returncode == 2
+    assert done.stderr.startswith(said)
+    assert "mine" not in done.stderr
+
+
+def test_new_suggests_commands_that_can_be_pasted(nonsense, tmp_path):
+    (tmp_path / "my pump").mkdir()
+    done = nonsense("new", "my pump/x 1.2")
+    assert done.returncode == 0, done.stderr
+    checked = next(line for line in done.stdout.splitlines() if "rotorsim check" in line)
+    assert shlex.split(checked) == ["rotorsim", "check", "my pump/x 1.2.toml"]
+    assert nonsense(*shlex.split(checked)[1:], "--quiet").returncode == 0
+    done = nonsense("new", "x.txt")
+    assert 'write for example "x.toml"' in done.stderr
+
+
+def test_shipped_names_are_completed():
+    from rotorsim.cli.file_commands import shipped_names
+
+    assert shipped_names("orbit_s") == ["orbit_step", "orbit_subcritical"]
+    assert "dal" in shipped_names("")
 
 
 @pytest.mark.parametrize("command", ["solve", "control"])
