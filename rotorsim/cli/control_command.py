@@ -143,6 +143,7 @@ def study_document(study: ControlStudy) -> dict[str, Any]:
         "gain": study.feedback.gain,
         "max_force": study.feedback.max_force,
         "largest_force": study.largest_force,
+        "saturates": _saturates(study),
         "margins": {
             axis: dataclasses.asdict(one) for axis, one in zip("xy", study.margins, strict=True)
         },
@@ -176,12 +177,27 @@ def study_tables(study: ControlStudy) -> list[Any]:
             axis, *(_factor(v) for v in (one.gain_increase, one.gain_reduction)),
             _factor(one.phase_margin * 57.29577951308232), number(one.modulus_margin, 3),
         )  # fmt: skip
-    force = study.largest_force
-    lines = [] if force is None else [
-        f"largest actuator force {number(force)} N of {_factor(study.feedback.max_force)} N, "
-        f"from {number(study.disturbance * 1e6)} um beside rest; load {number(study.load)} N"
-    ]  # fmt: skip
+    lines = [] if study.largest_force is None else [_force_words(study)]
     return [table, gains, margins, *lines, *([study.note] if study.note else [])]
+
+
+def _saturates(study: ControlStudy) -> bool:
+    """Whether the actuator reached its limit in the run in time."""
+    force = study.largest_force
+    return force is not None and force >= (1.0 - 1e-9) * study.feedback.max_force
+
+
+def _force_words(study: ControlStudy) -> str:
+    """The actuator's force in the run in time, and what it had to do."""
+    from .tables import number
+
+    limit = study.feedback.max_force
+    of = "unlimited" if limit == float("inf") else f"of {number(limit)} N"
+    said = f"largest actuator force {number(study.largest_force)} N, {of}"
+    if _saturates(study):
+        said = f"the actuator saturates at {number(limit)} N"
+    start = f"from {number(study.disturbance * 1e6)} um beside rest"
+    return f"{said}; {start}, load {number(study.load)} N"
 
 
 def _factor(value: float) -> str:

@@ -78,14 +78,17 @@ def stability_map(
 def eigenvalue_plot(
     curves: Sequence[EigenvalueCurve], title: str = "", ax: Axes | None = None
 ) -> Figure:
-    """Upper half of the complex plane: branches over speed, markers at the last speed."""
+    """Upper half of the complex plane: branches over speed, open at first, filled at last."""
     ax = axes_or_new(ax, (6.2, 4.6))
     every = [curve.eigenvalues[np.isfinite(curve.eigenvalues)] for curve in curves]
     highest = max(float(np.abs(values.imag).max(initial=1e-3)) for values in every)
     right = max(float(values.real.max(initial=0.0)) for values in every)
     ax.axvspan(0.0, max(1.4 * right, 0.12 * highest), color="#f2d7d9", zorder=0)
     ax.axvline(0.0, color="#8c1d2f", linewidth=1.0)
-    ax.text(0.99, 0.97, "unstable", transform=ax.transAxes, ha="right", va="top", color="#8c1d2f")
+    ax.text(
+        0.99, 0.97, "unstable", transform=ax.transAxes, ha="right", va="top", color="#8c1d2f",
+        rotation=90,
+    )  # fmt: skip
     for number, curve in enumerate(curves):
         look = model_style(curve.name)
         for k, branch in enumerate(curve.eigenvalues.T):
@@ -100,13 +103,20 @@ def eigenvalue_plot(
     ax.set_xlim(1.08 * min(left, -0.2 * highest), max(1.4 * right, 0.12 * highest))
     ax.set_ylim(0.0, 1.08 * highest)
     low, high = curves[0].speed[0] * RPM, curves[0].speed[-1] * RPM
+    for speed, face in ((low, "w"), (high, "k")):
+        ax.plot([], [], MARKERS[0], color="k", mfc=face, ls="", label=f"at {speed:.0f} rpm")
     ax.set(
         xlabel="real part: growth rate [1/s]",
         ylabel="imaginary part: damped frequency [rad/s]",
-        title=title or f"eigenvalues from {low:.0f} rpm (open) to {high:.0f} rpm (filled)",
+        title=title or "eigenvalues over speed",
     )
-    ax.legend(loc="upper left")
-    return figure_of(ax)
+    figure = figure_of(ax)
+    if len(figure.axes) == 1:
+        # Below: within the axes it would cover eigenvalues.
+        figure.legend(loc="outside lower center", ncols=len(curves) + 2)
+    else:
+        ax.legend(loc="best")
+    return figure
 
 
 def campbell_diagram(
@@ -123,15 +133,16 @@ def campbell_diagram(
     grows = False
     for curve in curves:
         look = model_style(curve.name)
-        hertz = np.where(curve.eigenvalues.imag > 0.0, curve.eigenvalues.imag, np.nan) / (2 * np.pi)
-        rpm = curve.speed * RPM
-        for k in range(hertz.shape[1]):
+        for k in range(curve.eigenvalues.shape[1]):
             label = model_label(curve.name) if k == 0 else None
-            ax.plot(rpm, hertz[:, k], **look, label=label)
-            unstable = np.where(curve.eigenvalues[:, k].real > 0.0, hertz[:, k], np.nan)
+            speed, values = _with_crossings(curve.speed, curve.eigenvalues[:, k], curve.thresholds)
+            hertz = np.where(values.imag > 0.0, values.imag, np.nan) / (2 * np.pi)
+            ax.plot(speed * RPM, hertz, **look, label=label)
+            unstable = np.where(values.real >= 0.0, hertz, np.nan)
             grows = grows or bool(np.isfinite(unstable).any())
-            ax.plot(rpm, unstable, color=look["color"], linewidth=4.5, alpha=0.45)
-        _mark_whirl(ax, curve, rpm, hertz)
+            ax.plot(speed * RPM, unstable, color=look["color"], linewidth=4.5, alpha=0.45)
+        hertz = np.where(curve.eigenvalues.imag > 0.0, curve.eigenvalues.imag, np.nan) / (2 * np.pi)
+        _mark_whirl(ax, curve, curve.speed * RPM, hertz)
     ends = np.array([0.0, max(float(curve.speed[-1]) for curve in curves)])
     for order in orders:
         ax.plot(ends * RPM, order * ends / (2 * np.pi), color="0.35", linewidth=0.8)
@@ -148,6 +159,33 @@ def campbell_diagram(
     ax.set_ylim(bottom=0.0)
     ax.legend(loc="upper left")
     return figure_of(ax)
+
+
+def _with_crossings(
+    speed: Array, branch: NDArray[np.complex128], thresholds: Sequence[tuple[float, float]]
+) -> tuple[Array, NDArray[np.complex128]]:
+    """A branch with points where it turns unstable or back: growth begins there, not at a knot.
+
+    A threshold at about the branch's frequency is taken as it is; a branch that crosses elsewhere
+    (another one is unstable already) is interpolated.
+    """
+    speeds: list[float] = []
+    values: list[complex] = []
+    for i, value in enumerate(branch):
+        if i and branch[i - 1].real * value.real < 0.0:
+            before = complex(branch[i - 1])
+            t = before.real / (before.real - value.real)
+            at = float(speed[i - 1] + t * (speed[i] - speed[i - 1]))
+            whirl = before.imag + t * (complex(value).imag - before.imag)
+            for place, frequency in thresholds:
+                inside = speed[i - 1] <= place <= speed[i]
+                if inside and abs(frequency - abs(whirl)) < 0.1 * abs(whirl):
+                    at, whirl = place, frequency if whirl > 0.0 else -frequency
+            speeds.append(at)
+            values.append(complex(0.0, whirl))
+        speeds.append(float(speed[i]))
+        values.append(complex(value))
+    return np.array(speeds), np.array(values)
 
 
 _SENSES = (("^", "whirls forward", 1.0), ("v", "whirls backward", -1.0))

@@ -72,10 +72,12 @@ def test_bad_arguments(here):
 
 
 def test_held_with_enough_force_and_lost_with_too_little(here):
-    done = here("control", "small.toml", "--max-force", "1 kN", "-o", "figures")
+    small = ("--disturbance", "0.2 um", "-o", "figures")
+    done = here("control", "small.toml", "--max-force", "1 kN", *small)
     assert done.returncode == 0, done.stderr
-    for word in ("passive", "settled", "Margins", "short bearing"):
-        assert word in done.stdout
+    for word in ("passive", "settled", "Margins", "short bearing", "N, of 1000 N"):
+        assert word in " ".join(done.stdout.split()), done.stdout
+    assert "saturates" not in done.stdout
     for name in ("root_locus.png", "bode.svg", "control_orbits.png"):
         assert Path("figures", name).stat().st_size > 5000
     weak = here("control", "small.toml", "--max-force", "20 N", "--disturbance", "30 um", "--json")
@@ -86,4 +88,7 @@ def test_held_with_enough_force_and_lost_with_too_little(here):
     assert "settled" not in (said["controlled"]["status"], said["passive"]["status"])
     assert said["passive"]["max_eccentricity_ratio"] > 0.6
     assert said["largest_force"] == pytest.approx(20.0)
+    assert said["saturates"] is True
+    weak = here("control", "small.toml", "--max-force", "20 N", "--disturbance", "30 um")
+    assert "the actuator saturates at 20 N; from 30 um beside rest" in " ".join(weak.stdout.split())
     assert "does not hold the rotor" in weak.stderr

@@ -223,6 +223,32 @@ def test_campbell_marks_senses_and_thresholds():
     assert crosses[0].get_ydata()[0] == pytest.approx(450.0 / (2 * np.pi))
 
 
+def test_growth_in_a_campbell_diagram_begins_at_the_threshold():
+    speed = np.array([800.0, 1000.0])
+    values = np.stack([[-4.0 + 400j, 4.0 + 480j], [-9.0 + 900j, 3.0 + 900j]], axis=1)
+    curve = plots.EigenvalueCurve("thd", speed, values, None, [(930.0, 455.0)])
+    (axes,) = plots.campbell_diagram([curve]).axes
+    thick = [line for line in axes.lines if line.get_linewidth() == 4.5 and line.get_xdata().size]
+    starts = []
+    for line in thick:
+        data = line.get_xydata()
+        starts.append(data[np.isfinite(data[:, 1])][0])
+    # The first branch at the threshold marked; the second, which crosses later, interpolated.
+    assert starts[0] == pytest.approx([930.0 * 30 / np.pi, 455.0 / (2 * np.pi)])
+    assert starts[1] == pytest.approx([950.0 * 30 / np.pi, 900.0 / (2 * np.pi)])
+
+
+def test_eigenvalues_explain_their_open_and_filled_ends_beside_the_axes():
+    figure = plots.eigenvalue_plot([eigenvalue_curve()], "pump")
+    (axes,) = figure.axes
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    ends = [f"at {speed * 30 / np.pi:.0f} rpm" for speed in (SPEED[0], SPEED[-1])]
+    assert labels == ["THD", *ends]
+    figure.canvas.draw()
+    assert axes.get_legend() is None
+    assert not figure.legends[0].get_window_extent().overlaps(axes.get_window_extent())
+
+
 def test_root_locus_says_where_it_crosses():
     mass = np.linspace(100.0, 300.0, 21)
     branch = (mass - 205.0) + 400j
