@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..file_kinds import FileKind, kind_of, sentence
 from .matrices import second_order_state_matrix
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SYMMETRY = 1e-8
+_OWN_KINDS = (None, FileKind.NUMPY, FileKind.MATLAB)
 _IN_FILE = {"mass": "M", "damping": "D or C", "gyroscopic": "G", "stiffness": "K"}
 """Names of the matrices in a file."""
 _KNOWN = ("M", "D", "C", "G", "K", "bearing_nodes", "dofs_per_node")
@@ -227,7 +229,9 @@ def _matrix(value: Any) -> Array:
 
 def _read(source: Path) -> Mapping[str, Any]:
     if source.suffix not in (".npz", ".mat"):
-        raise InputError("must end in .npz or .mat", source=source)
+        kind = kind_of(source)
+    known = f"{sentence(kind)}; a rotor's file " if kind not in _OWN_KINDS else ""
+    raise InputError(f"{known}must end in .npz or .mat", source=source)
     try:
         if source.suffix == ".npz":
             # No pickles: a file from elsewhere must not run code.

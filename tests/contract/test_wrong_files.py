@@ -135,6 +135,19 @@ def test_a_file_of_another_kind_is_recognised(command, name, said, here: Command
 
 @pytest.mark.parametrize(
     ("name", "said"),
+    [("x.rrd", "is a recording"), ("q.toml", "is a scenario"), ("noise.x", "must end in .npz")],
+)
+def test_a_rotor_is_read_from_matrices(name: str, said: str, here: CommandLine, files: Path):
+    (files / "noise.x").write_bytes(b"x")
+    done = here("stability", "c.csv", "--rotor", name)
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"error: {name}: ")
+    assert said in done.stderr
+    assert "must end in .npz or .mat" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
     [
         ("q.toml", "is a scenario"),
         ("c.csv", "CoefficientTable.from_csv"),
