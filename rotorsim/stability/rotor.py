@@ -230,8 +230,8 @@ def _matrix(value: Any) -> Array:
 def _read(source: Path) -> Mapping[str, Any]:
     if source.suffix not in (".npz", ".mat"):
         kind = kind_of(source)
-    known = f"{sentence(kind)}; a rotor's file " if kind not in _OWN_KINDS else ""
-    raise InputError(f"{known}must end in .npz or .mat", source=source)
+        known = f"{sentence(kind)}; a rotor's file " if kind not in _OWN_KINDS else ""
+        raise InputError(f"{known}must end in .npz or .mat", source=source)
     try:
         if source.suffix == ".npz":
             # No pickles: a file from elsewhere must not run code.
