@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from ..pipeline.wording import RPM, ZERO_CELSIUS, critical_mass_text, number
+from ..pipeline.wording import RPM, ZERO_CELSIUS, critical_mass_text, number, wall_share_text
 
 if TYPE_CHECKING:
     from ..operating_point import OperatingPoint
@@ -114,8 +114,7 @@ def _rows(point: OperatingPoint) -> list[tuple[str, str, str]]:
         ("residual", number(point.residual, 2), ""),
     ]
     if point.heat_balance is not None:
-        walls = f"{100.0 * point.heat_balance.wall_share:.0f}".replace("-0", "0")
-        rows.append(("heat through bush and shaft", walls, "%"))
+        rows.append(("heat through the walls", wall_share_text(point), "%"))
         rows.append(("energy imbalance", number(100.0 * point.heat_balance.imbalance, 2), "%"))
     return rows
 

@@ -65,6 +65,14 @@ def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
     return lines
 
 
+def wall_share_text(point: OperatingPoint) -> str:
+    """Part of the heat that leaves through bush and shaft [%]; a dash without heating."""
+    heat = point.heat_balance
+    if heat is None or not math.isfinite(heat.wall_share):
+        return "-"
+    return str(round(100.0 * heat.wall_share))
+
+
 def critical_mass_text(point: OperatingPoint) -> str:
     """Critical mass [kg], or the verdict where no mass is critical."""
     if point.critical_mass is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from ..pipeline.wording import RPM, ZERO_CELSIUS, number
 from . import html
 
 if TYPE_CHECKING:
+    from ..model import Bearing
     from ..scenario import Scenario
 
 Rows = list[tuple[str, str]]
@@ -46,6 +48,7 @@ def _bearing(scenario: Scenario) -> Rows:
         ("length", _millimetres(bearing.length)),
         ("length to diameter", number(bearing.length / bearing.diameter)),
         ("radial clearance", ", ".join(_micrometres(c) for c in scenario.radial_clearances)),
+        ("clearance over radius", ", ".join(_per_mille(bearing, scenario))),
     ]
     if bearing.bush_outer_radius is not None:
         rows.append(("bush outer radius", _millimetres(bearing.bush_outer_radius)))
@@ -75,6 +78,11 @@ def _bearing(scenario: Scenario) -> Rows:
     return rows
 
 
+def _per_mille(bearing: Bearing, scenario: Scenario) -> list[str]:
+    ratios = [c / bearing.journal_radius for c in scenario.radial_clearances]
+    return [f"{number(1e3 * ratio)} ‰" for ratio in ratios]
+
+
 def _oil(scenario: Scenario) -> Rows:
     oil, supply = scenario.lubricant, scenario.thermal.supply_temperature
     temperatures = sorted({supply, 40.0 + ZERO_CELSIUS, 100.0 + ZERO_CELSIUS})
@@ -85,11 +93,22 @@ def _oil(scenario: Scenario) -> Rows:
         if low <= t <= high
     ]
     return [
+        *_grade(scenario),
         *rows,
         ("density", f"{number(oil.density)} kg/m³"),
         ("specific heat", f"{number(oil.specific_heat)} J/(kg K)"),
         ("thermal conductivity", f"{number(oil.thermal_conductivity)} W/(m K)"),
     ]
+
+
+def _grade(scenario: Scenario) -> Rows:
+    """The ISO VG grade as the scenario's text has it: the law that follows from it keeps none."""
+    given = tomllib.loads(scenario.text).get("lubricant", {})
+    if "iso_vg" not in given:
+        return []
+    index = given.get("viscosity_index")
+    more = "" if index is None else f", viscosity index {number(index)}"
+    return [("oil", f"ISO VG {number(given['iso_vg'])}{more}")]
 
 
 def _film(scenario: Scenario) -> Rows:
@@ -130,7 +149,9 @@ def _operation(scenario: Scenario) -> Rows:
     if isinstance(target, EccentricityTarget):
         rows.append(("eccentricity ratio (given)", number(target.eccentricity_ratio)))
     else:
-        rows.append(("static load (given)", f"{number(target.load)} N"))
+        rows.append(("static load (given)", f"{number(target.load / 1e3)} kN"))
+        unit = target.load / (scenario.bearing.length * scenario.bearing.diameter)
+        rows.append(("specific load W/(L D)", f"{number(unit / 1e6, 3)} MPa"))
     if scenario.load_direction:
         rows.append(("load direction", _degrees(scenario.load_direction)))
     rows += list(_rotor(scenario))

@@ -10,18 +10,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..atomic import write_text
-from ..pipeline.wording import RPM, curve_title, grouped_warnings, number, verdict_at_top
+from ..pipeline.wording import RPM, grouped_warnings, number
 from ..table.variables import CONVENTIONS
 from . import html, results
 from .inputs import inputs
+from .verdict import headline
 
 if TYPE_CHECKING:
     from ..pipeline.main_job import Results
 
 _CAPTIONS = {
     "coefficients": "Stiffness and damping against speed, load frame.",
-    "critical_mass": "Critical mass and whirl frequency ratio against speed.",
-    "stability_map": "Where the rigid rotor is stable: shaft speed and rotor mass.",
+    "critical_mass": "Critical mass and whirl frequency ratio of a rigid rotor against speed.",
+    "stability_map": "Where a rigid rotor is stable: shaft speed and rotor mass.",
     "eigenvalues": "Eigenvalues of the rotor on its bearing over speed.",
     "film": "Film pressure and temperature at the highest speed.",
     "film_profiles": "Pressure and temperature around the bearing at the highest speed.",
@@ -74,10 +75,16 @@ def _parts(found: Results, when: datetime.datetime | None) -> Iterator[str]:
     scenario = found.scenario
     figures = _figures(found)
     yield f"<header>\n<h1>{escape(scenario.title)}</h1>\n{_origin(found, when)}\n</header>"
-    yield _verdict(found)
+    yield headline(found)
     yield html.section("Warnings", html.listing(_warnings(found), "warnings") or _no_warnings())
     yield html.section("Inputs", inputs(scenario))
-    yield html.section("Margins", results.margins(found.curves), *figures.pop("stability"))
+    yield html.section(
+        "Margins",
+        results.margins(found.curves),
+        _not_rigid(found),
+        _tolerances(found),
+        *figures.pop("stability"),
+    )
     yield html.section("Static results", results.top_points(found.points), *figures.pop("static"))
     yield html.section("Stiffness and damping", *figures.pop("coefficients"))
     yield html.section("Orbits", results.orbits(found.orbits), *figures.pop("orbits"))
@@ -99,28 +106,13 @@ def _origin(found: Results, when: datetime.datetime | None) -> str:
     return html.paragraph(f"{text}rotorsim {__version__}.", "origin")
 
 
-def _verdict(found: Results) -> str:
-    """One sentence that a reader must not miss."""
-    counted = [point for point in found.points if not point.converged]
-    gaps = f" {len(counted)} of {len(found.points)} points did not converge." if counted else ""
-    said = {curve_title(curve): verdict_at_top(curve) for curve in found.curves}
-    unstable = [name for name, verdict in said.items() if verdict == "unstable"]
-    rotor = found.curves[0].rotor if found.curves else ""
-    if not rotor:
-        return html.paragraph(f"No rotor given: no verdict on it.{gaps}", "verdict")
-    at = f"at {found.curves[0].speed[-1] * RPM:.0f} rpm with the {rotor}"
-    if unstable:
-        return html.paragraph(f"Unstable {at}: {'; '.join(unstable)}.{gaps}", '"verdict bad"')
-    if "-" in said.values():
-        return html.paragraph(f"No verdict {at} on every bearing.{gaps}", "verdict")
-    kind = "verdict" if gaps else '"verdict good"'
-    return html.paragraph(f"Stable {at} in every case computed.{gaps}", kind)
-
-
 def _warnings(found: Results) -> list[str]:
     from ..checks import regime_warnings
+    from ..drawing import drawing_warnings
 
-    top = float(found.scenario.speeds[-1])
+    scenario = found.scenario
+    top = float(scenario.speeds[-1])
+    mass = None if scenario.rotor is None else scenario.rotor.mass
     lines = list(found.problems)
     lines += [
         f"{point.thermal_model}, c = {number(point.radial_clearance * 1e6)} µm, "
@@ -130,9 +122,34 @@ def _warnings(found: Results) -> list[str]:
     ]
     lines += grouped_warnings(found.points)
     already = " ".join(lines)
-    for case in found.scenario.cases():
-        lines += [t for t in regime_warnings(case, top) if t not in already and t not in lines]
+    for case in scenario.cases():
+        said = (*drawing_warnings(case, mass), *regime_warnings(case, top))
+        lines += [text for text in said if text not in already and text not in lines]
     return lines
+
+
+def _not_rigid(found: Results) -> str:
+    """Whose critical mass and map are shown, where the scenario's rotor is another one."""
+    if not found.curves or not found.curves[0].rotor or found.curves[0].mass is not None:
+        return ""
+    return html.paragraph(
+        "M crit, its whirl ratio and the map over mass are those of a rigid rotor, for comparison: "
+        f"they do not hold for the {found.curves[0].rotor} of this scenario. Verdict, threshold, "
+        "decay rate and decrement are the scenario's rotor's."
+    )
+
+
+def _tolerances(found: Results) -> str:
+    """That there is a study which is not on this page."""
+    given = found.scenario.tolerances
+    if given is None:
+        return ""
+    name = "SCENARIO" if found.scenario.source is None else found.scenario.source.name
+    inputs_given = ", ".join(word.replace("_", " ") for word in given.spreads)
+    return html.paragraph(
+        f"The scenario gives tolerances ({inputs_given}); all numbers here are for the nominal "
+        f"values. What the tolerances make of the threshold: rotorsim stability {name} --tolerances"
+    )
 
 
 def _no_warnings() -> str:
@@ -147,6 +164,9 @@ def _conventions() -> str:
             "with the rotation; S = μ N L D (R/c)²/W, N in revolutions per second.",
             "Mass margin: 1 − mass over critical mass. Logarithmic decrement: 2π times decay rate "
             "over damped frequency, of the slowest mode.",
+            "T out: supply temperature plus the heat that the oil carries off over ρ c_p times the "
+            "side flow, where warm and supplied oil mix. To walls: part of the heat that leaves "
+            "through bush and shaft.",
             *_MODEL_LIMITS,
         ]
     )

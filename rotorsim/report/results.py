@@ -18,6 +18,7 @@ from ..pipeline.wording import (
     number,
     thresholds_text,
     verdict_at_top,
+    wall_share_text,
 )
 from . import html
 
@@ -29,8 +30,13 @@ if TYPE_CHECKING:
 
 POINT_HEAD = (
     "rpm", "ε", "φ °", "load kN", "S", "h min µm", "p max MPa", "T max °C", "T mean °C",
-    "friction N", "loss kW", "side flow L/min", "M crit kg", "status",
+    "T out °C", "friction N", "loss kW", "side flow L/min", "to walls %", "M crit kg", "status",
 )  # fmt: skip
+TOP_HEAD = (
+    "ε", "φ °", "load kN", "h min µm", "p max MPa", "T max °C", "T out °C", "loss kW",
+    "side flow L/min", "to walls %", "M crit kg", "status",
+)  # fmt: skip
+"""At the highest speed; the appendix has every number."""
 COEFFICIENT_HEAD = (
     "rpm", "Kxx", "Kxy", "Kyx", "Kyy", "Cxx", "Cxy", "Cyx", "Cyy"
 )  # fmt: skip
@@ -48,9 +54,13 @@ def point_row(point: OperatingPoint) -> list[str]:
         number(point.max_pressure / 1e6, 3),
         number(point.max_temperature - ZERO_CELSIUS, 3),
         number(point.mean_temperature - ZERO_CELSIUS, 3),
+        number(
+            None if point.outlet_temperature is None else point.outlet_temperature - ZERO_CELSIUS, 3
+        ),
         number(point.friction_force),
         number(point.power_loss / 1e3),
         number(point.side_flow * 6e4),
+        wall_share_text(point),
         critical_mass_text(point),
         point.status.value.replace("_", " "),
     ]
@@ -59,12 +69,14 @@ def point_row(point: OperatingPoint) -> list[str]:
 def top_points(points: Sequence[OperatingPoint]) -> str:
     """Operating points at the highest speed, one line for each thermal model and clearance."""
     top = max((point.speed for point in points), default=0.0)
-    rows = [
-        [point.thermal_model, number(point.radial_clearance * 1e6), *point_row(point)[1:]]
-        for point in points
-        if point.speed == top
-    ]
-    head = ("model", "c µm", *POINT_HEAD[1:])
+    chosen = [POINT_HEAD.index(name) for name in TOP_HEAD]
+    rows = []
+    for point in points:
+        if point.speed == top:
+            cells = point_row(point)
+            clearance = number(point.radial_clearance * 1e6)
+            rows.append([point.thermal_model, clearance, *(cells[place] for place in chosen)])
+    head = ("model", "c µm", *TOP_HEAD)
     return _wide(html.table(head, rows, f"At {top * RPM:.0f} rpm", texts=1)) if rows else ""
 
 

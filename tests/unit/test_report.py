@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 from scenario_texts import BEARING, CONSTANT_OIL
 
-from rotorsim.operating_point import OperatingPoint
+from rotorsim.operating_point import HeatBalance, OperatingPoint
 from rotorsim.orbit import Orbit, OrbitStatus
 from rotorsim.pipeline.main_job import Results
+from rotorsim.pipeline.rotors import rotor_on_film
 from rotorsim.pipeline.stability import stability_curves
 from rotorsim.report import html, report_page, write_report
 from rotorsim.report.results import log_decrement
@@ -156,6 +157,58 @@ def test_stable_incomplete_and_unknown_are_told_apart(results, points, scenario)
     assert "try a finer mesh" in said
     assert "map: no" in said
     assert "nan" not in said
+
+
+def test_the_headline_names_range_changes_and_extremes(results, points):
+    said = words_of(report_page(results))
+    (curve,) = results.curves
+    crossed = ", ".join(f"{speed * 30.0 / np.pi:.0f}" for speed in curve.threshold_speeds)
+    assert f"Over 3000 to 12000 rpm this changes: isothermal, c = 100 um at {crossed} rpm." in said
+    thinnest = min(point.min_film_thickness for point in points)
+    assert f"Thinnest film {thinnest * 1e6:.3g} µm (isothermal, c = 100 µm," in said
+    assert "heating was not computed" in said
+    light = replace(results, curves=tuple(stability_curves(results.table, 10.0)))
+    assert "So it is throughout 3000 to 12000 rpm." in words_of(report_page(light))
+    hot = replace(
+        points[1], thermal_model="thd", max_temperature=373.15, outlet_temperature=343.15,
+        heat_balance=HeatBalance(1000.0, 200.0, 500.0, 300.0),
+    )  # fmt: skip
+    said = words_of(report_page(replace(results, points=(points[0], hot, points[2]))))
+    assert "hottest oil 100 °C (thd, c = 100 µm, 9000 rpm)" in said
+
+
+def test_a_rotor_that_is_not_rigid_is_told_from_the_rigid_one():
+    flexible = """[rotor]
+kind = "jeffcott"
+disc_mass = "800 kg"
+journal_mass = "200 kg"
+shaft_stiffness = "100 MN/m"
+[tolerances]
+radial_clearance = "5 um"
+[thermal]
+ambient_temperature = "40 degC"
+"""
+    oil = 'iso_vg = 46\ndensity = "860 kg/m^3"'
+    text = TEXT.split("[rotor]")[0].replace(CONSTANT_OIL, f"[lubricant]\n{oil}\n") + flexible
+    text = text.replace("eccentricity_ratio = 0.5", 'load = "18 kN"')
+    scenario = Scenario.from_text(text, "pump.toml")
+    points = sweep_points(list(scenario.cases()), [float(s) for s in scenario.speeds], workers=1)
+    table = as_table(points, scenario)
+    curves = stability_curves(table, rotor_on_film(scenario.rotor))
+    said = words_of(report_page(Results(scenario, table, tuple(points), tuple(curves))))
+    assert "those of a rigid rotor" in said
+    assert "do not hold for the Jeffcott rotor" in said
+    assert "rotorsim stability pump.toml --tolerances" in said
+    assert "oil ISO VG 46" in said
+    assert "static load (given) 18 kN" in said
+    assert "specific load W/(L D) 2.25 MPa" in said
+    assert re.search(r"\de\+0[3-5]", said.split("Appendix C")[0]) is None
+
+
+def test_a_rigid_rotor_needs_no_such_words(results):
+    said = words_of(report_page(results))
+    assert "do not hold for" not in said
+    assert "--tolerances" not in said
 
 
 def test_long_figures_become_pixels():
