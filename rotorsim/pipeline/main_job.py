@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 Announce = Callable[[str], None]
+GRAVITY = 9.80665
+"""[m/s2]"""
 MAP_CELLS = 241
 """Along each axis of the stability map."""
 FILM_FRAMES = 12
@@ -178,29 +180,39 @@ def one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion
 def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
     """Stability map over speed and the scenario's masses.
 
-    Without masses in the scenario: up to three times the rotor's, or without a rotor three times
-    the critical mass (the median of all) at the highest speed.
+    Without masses in the scenario: up to three times that of its rotor; see `_usual_mass`.
     """
     from ..stability.map import stability_map
-    from ..stability.whirl import rigid_thresholds
 
     settings = scenario.stability
     speeds = np.linspace(table.speeds[0], table.speeds[-1], MAP_CELLS)
     speeds = speeds if len(table.speeds) > 1 else table.speeds
     if settings is not None and settings.mass:
         return stability_map(table, np.asarray(settings.mass), speeds)
-    mass = rigid_mass(scenario.rotor)
-    if mass is not None:
-        middle = mass
-    else:
-        top = rigid_thresholds(
-            table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
-        )
-        known = top.critical_mass[np.isfinite(top.critical_mass)]
-        if not known.size:
-            raise InputError("needs masses: no mass is critical here", key="stability.mass")
-        middle = float(np.median(known))
-    return stability_map(table, np.linspace(0.05, 3.0, MAP_CELLS) * middle, speeds)
+    mass = np.linspace(0.05, 3.0, MAP_CELLS) * _usual_mass(scenario, table)
+    return stability_map(table, mass, speeds)
+
+
+def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
+    """The rotor's mass per bearing [kg]; without one that of its kind.
+
+    That is the critical mass at the highest speed (the median of all), or, where no mass is
+    critical, what weighs as much as the load.
+    """
+    from ..stability.whirl import rigid_thresholds
+
+    if scenario.rotor is not None:
+        return scenario.rotor.mass
+    top = rigid_thresholds(
+        table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
+    )
+    known = top.critical_mass[np.isfinite(top.critical_mass)]
+    if not known.size and "load" in table.dataset:
+        load = table.dataset["load"].values
+        known = load[np.isfinite(load) & (load > 0.0)] / GRAVITY
+    if not known.size:
+        raise InputError("needs masses: no mass is critical here", key="stability.mass")
+    return float(np.median(known))
 
 
 def eigenvalue_paths(scenario: Scenario, table: CoefficientTable) -> list[EigenvaluePath]:

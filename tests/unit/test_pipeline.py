@@ -134,3 +134,26 @@ def test_the_companion_run_is_of_the_other_kind(points, speed, constant, top):
     schedule = orbit_steps.companion_schedule(changed.orbit, table)
     assert schedule.is_constant == constant
     assert max(schedule.speeds) == pytest.approx(top * np.pi / 30)
+
+
+def test_a_map_without_a_mass_to_go_by(scenario, points):
+    """Of the rotor, else of the critical masses, else of what weighs as much as the load."""
+    from dataclasses import replace
+
+    from rotorsim.pipeline.main_job import GRAVITY, map_of
+
+    table = as_table(points, scenario)
+    alone = replace(scenario, rotor=None)
+    critical = np.nanmedian([one.critical_mass[-1] for one in stability_curves(table)])
+    calm = table.dataset.copy(deep=True)
+    for name in ("kxy", "kyx"):
+        calm[name] = 0.0 * calm[name]
+    stable = type(table)(calm)
+    load = np.median(calm["load"].values)
+    for mass, case, known in (
+        (2000.0, scenario, table),
+        (critical, alone, table),
+        (load / GRAVITY, alone, stable),
+    ):
+        found = map_of(case, known).dataset["mass"].values
+        assert found.mean() == pytest.approx(1.525 * mass, rel=1e-6)

@@ -202,7 +202,7 @@ def test_thermal_film_of_a_constant_viscosity_is_the_isothermal_one():
 
 
 def test_a_groove_shows_the_oil_that_it_hands_on():
-    """Between the temperatures of the supply and of the oil that arrives; the film goes on there."""
+    """Between the supply's temperature and that of the arriving oil; the film goes on there."""
     case = thermal_case(bearing=BEARINGS["grooved"], inlet=InletModel.MIXING)
     point, _ = solve_case(case, SPEED, keep_fields=True)
     assert point.converged
