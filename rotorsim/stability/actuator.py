@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..errors import InputError
+
 if TYPE_CHECKING:
     from .control import StateFeedback
 
@@ -45,11 +47,23 @@ class ActuatedForce:
     reference : (float, float)
         Position [m] about which the actuator acts: the equilibrium of the film alone, so that the
         actuator carries no static load.
+
+    Raises
+    ------
+    InputError
+        The feedback is not one of the journal's state.
     """
 
     film: FilmForce
     feedback: StateFeedback
     reference: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        if self.feedback.gain.shape != (2, 4):
+            raise InputError(
+                "must be of the journal alone, 2 forces by x, y, vx, vy",
+                key="feedback.gain", value=self.feedback.gain.shape,
+            )  # fmt: skip
 
     @property
     def radial_clearance(self) -> float:

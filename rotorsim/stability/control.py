@@ -18,6 +18,8 @@ ComplexArray = NDArray[np.complex128]
 
 _NO_GAIN = 1e9
 """Factors of a loop gain above this are no factors any more."""
+_MOST_STATES = 12
+"""Margins come from polynomials, whose coefficients overflow beyond."""
 
 
 def receptance(system: control.StateSpace, frequency: ArrayLike) -> ComplexArray:
@@ -88,12 +90,13 @@ def locus_over_damping(coefficients: Coefficients, mass: float, added: ArrayLike
 
 @dataclass(frozen=True, eq=False)
 class StateFeedback:
-    """Actuator force from the journal's state, F = -gain (x, y, vx, vy), limited per axis.
+    """Actuator force from the rotor's state, F = -gain state, limited per axis.
 
     Attributes
     ----------
-    gain : (2, 4) array
-        [N/m] for the displacements, [N s/m] for the velocities.
+    gain : (m, n) array
+        [N/m] for the displacements, [N s/m] for the velocities. For a rigid rotor (2, 4), on
+        x, y, vx, vy; what acts in time (`ActuatedForce`) is of this kind.
     max_force : float
         Saturation of each axis [N].
     """
@@ -103,19 +106,23 @@ class StateFeedback:
 
     def __post_init__(self) -> None:
         gain = np.array(self.gain, dtype=float)
-        if gain.shape != (2, 4) or not np.all(np.isfinite(gain)):
-            raise InputError("must be a 2 x 4 matrix of finite numbers", key="gain", value=gain)
+        if gain.ndim != 2 or not 0 < gain.shape[0] < gain.shape[1] or not np.all(np.isfinite(gain)):
+            raise InputError(
+                "must be a matrix of finite numbers, forces by states (2 x 4 for a rigid rotor)",
+                key="gain", value=gain,
+            )  # fmt: skip
         if not self.max_force > 0.0:
             raise InputError("must be above 0 (N)", key="max_force", value=self.max_force)
         object.__setattr__(self, "gain", gain)
 
     def __call__(self, state: ArrayLike) -> Array:
-        """Force [N] (..., 2) at state (..., 4), about the operating point."""
+        """Force [N] (..., m) at state (..., n), about the operating point."""
         force = -np.asarray(state, dtype=float) @ self.gain.T
         return np.clip(force, -self.max_force, self.max_force)
 
     def closed_loop(self, system: control.StateSpace) -> control.StateSpace:
         """Rotor with the unsaturated loop closed, same signals."""
+        _check_sizes(system, self.gain)
         return control.StateSpace(
             system.A - system.B @ self.gain, system.B, system.C, system.D,
             states=system.state_labels,
@@ -137,11 +144,24 @@ def design_lqr(
     Parameters
     ----------
     system : control.StateSpace
-        Rigid rotor of `state_space`.
+        Its inputs are the actuator's forces, its outputs the displacements to be kept small: the
+        rigid rotor of `state_space`, or some nodes of another rotor, for example
+        ``rotor_state_space(...)[["displacement_4", "displacement_5"], ["force_4", "force_5"]]``.
     displacement_scale, velocity_scale, force_scale : float
         Acceptable displacement [m], velocity [m/s] and force [N].
     max_force : float
         Saturation [N].
+
+    Returns
+    -------
+    StateFeedback
+        On all states of `system`: of a rotor with many, an observer has to give them.
+
+    Raises
+    ------
+    InputError
+        A scale is not above zero, every degree of freedom has an actuator, or no such regulator
+        exists (these forces do not reach an unstable mode, or these outputs do not show it).
     """
     for key, value in (
         ("displacement_scale", displacement_scale),
@@ -150,6 +170,10 @@ def design_lqr(
     ):
         if not value > 0.0:
             raise InputError("must be above 0", key=key, value=value)
+    if (system.nstates, system.ninputs) != (4, 2):
+        return _design_lqr_of_outputs(
+            system, displacement_scale, force_scale, velocity_scale, max_force
+        )
     # In units of the scales, so that the Riccati equation is well conditioned.
     a, b = np.asarray(system.A), np.asarray(system.B)
     time = np.sqrt(np.abs(a[2:, :2]).max())
@@ -163,6 +187,44 @@ def design_lqr(
         np.eye(2),
     )
     return StateFeedback(force_scale * np.asarray(gain) @ to_scaled, max_force)
+
+
+def _design_lqr_of_outputs(
+    system: control.StateSpace, displacement: float, force: float, velocity: float, limit: float
+) -> StateFeedback:
+    """Regulator of any rotor, weighted by its outputs and their rates."""
+    a, b, c = (np.asarray(part) for part in (system.A, system.B, system.C))
+    if 2 * system.ninputs >= system.nstates or not system.noutputs:
+        raise InputError(
+            f"has {system.ninputs} inputs and {system.nstates} states: pick the actuator's node, "
+            'for example system[["displacement_4", "displacement_5"], ["force_4", "force_5"]] of '
+            "rotor_state_space",
+            key="system",
+        )
+    weight = c.T @ c / displacement**2
+    if np.isfinite(velocity):
+        if np.any(c @ b != 0.0):
+            raise InputError(
+                "needs outputs that a force does not move at once (no massless journals)",
+                key="velocity_scale", value=velocity,
+            )  # fmt: skip
+        weight = weight + (c @ a).T @ (c @ a) / velocity**2
+    try:
+        gain, _, poles = control.lqr(a, b, weight, np.eye(system.ninputs) / force**2)
+    except (np.linalg.LinAlgError, control.ControlArgument) as error:
+        raise InputError(f"has no such regulator ({error})", key="system") from error
+    if not np.all(np.real(poles) < 0.0):
+        raise InputError("has no such regulator: an unstable mode is out of reach", key="system")
+    return StateFeedback(np.asarray(gain), limit)
+
+
+def _check_sizes(system: control.StateSpace, gain: Array) -> None:
+    """Refuse a feedback that was made for another system."""
+    wanted = (system.ninputs, system.nstates)
+    if gain.shape != wanted:
+        raise InputError(
+            f"must have the system's size, forces by states {wanted}", key="gain", value=gain.shape
+        )
 
 
 def proportional_derivative(
@@ -252,9 +314,17 @@ class LoopMargins:
 
 
 def loop_margins(system: control.StateSpace, feedback: StateFeedback, axis: int) -> LoopMargins:
-    """Gain, phase and modulus margins of the collocated loop at `axis` (0: x, 1: y)."""
-    if axis not in (0, 1):
-        raise InputError("must be 0 (x) or 1 (y)", key="axis", value=axis)
+    """Gain, phase and modulus margins of the loop at one input, `axis` (0: x, 1: y)."""
+    _check_sizes(system, feedback.gain)
+    if axis not in range(system.ninputs):
+        known = "0 (x) or 1 (y)" if system.ninputs == 2 else f"from 0 to {system.ninputs - 1}"
+        raise InputError(f"must be {known}", key="axis", value=axis)
+    if system.nstates > _MOST_STATES:
+        raise InputError(
+            f"has {system.nstates} states, margins are found for at most {_MOST_STATES}: reduce it "
+            "(control.balanced_reduction), or look at the closed loop's poles",
+            key="system",
+        )
     other = np.array(feedback.gain)
     other[axis] = 0.0
     loop = control.StateSpace(

@@ -1,10 +1,12 @@
 """Responses, root locus, margins and controllers."""
 
+import control
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from rotorsim.errors import InputError
+from rotorsim.stability.actuator import ActuatedForce
 from rotorsim.stability.control import (
     StateFeedback,
     design_lqr,
@@ -17,7 +19,8 @@ from rotorsim.stability.control import (
     step_response,
     unbalance_response,
 )
-from rotorsim.stability.statespace import state_space
+from rotorsim.stability.rotor import GeneralRotor
+from rotorsim.stability.statespace import rotor_state_space, state_space
 from rotorsim.stability.whirl import rigid_threshold
 from rotorsim.table import Coefficients, CoefficientTable
 
@@ -101,6 +104,54 @@ def test_lqr_stabilises_past_the_passive_threshold(system):
     # Half the gain and ten times the gain still hold it (guaranteed margins of a regulator).
     for factor in (0.55, 10.0):
         assert rate(StateFeedback(factor * feedback.gain).closed_loop(system)) < 0.0
+
+
+@pytest.mark.parametrize("velocity_scale", [np.inf, 1e-3])
+@pytest.mark.parametrize("node", [0, 1])
+def test_lqr_of_a_general_rotor_has_the_stable_poles_of_the_hamiltonian(node, velocity_scale):
+    ks = 1e9 * np.eye(2)
+    rotor = GeneralRotor(
+        np.diag([MASS, MASS, 5.0, 5.0]), np.zeros((4, 4)), np.zeros((4, 4)),
+        np.block([[ks, -ks], [-ks, ks]]), bearing_nodes=(1,), dofs_per_node=2,
+    )  # fmt: skip
+    every = rotor_state_space(rotor, FILM)
+    names = [2 * node, 2 * node + 1]
+    system = every[[f"displacement_{i}" for i in names], [f"force_{i}" for i in names]]
+    assert rate(system) > 0.0
+    feedback = design_lqr(system, 1e-6, 1e3, velocity_scale)
+    assert feedback.gain.shape == (2, 8)
+    a, b, c = (np.asarray(part) for part in (system.A, system.B, system.C))
+    weight = c.T @ c * 1e12 + (c @ a).T @ (c @ a) / velocity_scale**2
+    # Shrinking the costate to the state's size, the eigenvalues of the Hamiltonian are sound.
+    size = 1e9
+    hamiltonian = np.block([[a, -b @ b.T * 1e6 * size], [-weight / size, -a.T]])
+    poles = np.linalg.eigvals(hamiltonian)
+    expected = np.sort_complex(poles[poles.real < 0.0])
+    found = np.sort_complex(feedback.closed_loop(system).poles())
+    assert found == pytest.approx(expected, rel=1e-4)
+
+
+def test_lqr_says_which_systems_it_takes(system):
+    ks = 1e9 * np.eye(2)
+    rotor = GeneralRotor(
+        np.eye(4), np.zeros((4, 4)), np.zeros((4, 4)), np.block([[ks, -ks], [-ks, ks]]), (1,), 2
+    )
+    with pytest.raises(InputError, match=r"4 inputs and 8 states: pick the actuator's node"):
+        design_lqr(rotor_state_space(rotor, FILM), 1e-6, 1e3)
+    # The last state grows, and no force reaches it.
+    a = np.diag([-1.0, -2.0, -3.0, -4.0, 5.0])
+    lost = control.StateSpace(a, np.eye(5, 2), np.eye(2, 5), np.zeros((2, 2)))
+    with pytest.raises(InputError, match="no such regulator"):
+        design_lqr(lost, 1e-6, 1e3)
+    other = StateFeedback(np.ones((2, 8)))
+    for use in (lambda: other.closed_loop(system), lambda: loop_margins(system, other, 0)):
+        with pytest.raises(InputError, match=r"gain: must have the system's size.*\(2, 4\)"):
+            use()
+    with pytest.raises(InputError, match="of the journal alone"):
+        ActuatedForce(None, other, (0.0, 0.0))  # type: ignore[arg-type]
+    many = control.StateSpace(-np.eye(40), np.eye(40, 2), np.eye(2, 40), np.zeros((2, 2)))
+    with pytest.raises(InputError, match="40 states, margins are found for at most"):
+        loop_margins(many, StateFeedback(np.ones((2, 40))), 0)
 
 
 def test_controlled_poles_agree_with_the_simulated_decay(system):
