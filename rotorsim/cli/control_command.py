@@ -62,6 +62,8 @@ def control(
     """Design a magnetic actuator's feedback, and try it in time on the nonlinear film.
 
     Example: rotorsim control scenarios/quick.toml --speed "15000 rpm" --max-force "2 kN"
+
+    A table of coefficients has no film to try it on: design on it from Python (design_lqr).
     """
     from ..pipeline.control_study import ControlWishes, Design, study_control
     from ..scenario import load_scenario
