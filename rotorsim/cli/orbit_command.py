@@ -13,7 +13,7 @@ from ..errors import InputError
 from .film_commands import computed_table
 from .inputs import check_file, table_path
 from .options import ModelOption, ScenarioArgument, WorkersOption
-from .output import DONE, INCOMPLETE, Output
+from .output import DONE, INCOMPLETE, Output, as_typed
 from .progress import late_progress, progress_bar
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ def orbit(
 
         output.show(orbit_table(rows), *orbit_details(rows))
         output.show(*(str(file) for file in written))
-        output.show(f"recorded in {path}; look at it: rotorsim view {path}")
+        output.show(f"recorded in {path}; look at it: rotorsim view {as_typed(path)}")
     failed = [one for one in orbits if one.status.value == "integration_failed"]
     for one in failed:
         output.warn(f"orbit {one.thermal_model}: {one.message}")

@@ -14,6 +14,7 @@ from ..pipeline.wording import (
     thresholds_text,
     verdict_at_top,
 )
+from .output import as_typed
 from .stability_tables import orbit_table
 from .tables import grid
 
@@ -50,7 +51,7 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
         yield orbit_table(said["orbits"])
     yield files_table(said["files"])
     for path in said["files"].get("recording", []):
-        yield f"Play it back: rotorsim view {path}"
+        yield f"Play it back: rotorsim view {as_typed(path)}"
 
 
 def _flexible(curve: StabilityCurve) -> bool:

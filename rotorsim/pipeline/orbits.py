@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments import refuse_path
 from ..errors import InputError
 from ..scenario.settings import OrbitForce, SpeedRamp
 from .actuators import with_actuator
@@ -70,6 +71,7 @@ def simulate_orbit(
     """
     from ..orbit import simulate
 
+    refuse_path(scenario)
     settings, _ = orbit_settings(scenario)
     if table is None and settings.force is OrbitForce.LINEAR:
         from ..sweep import tabulate
