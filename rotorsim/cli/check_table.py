@@ -66,9 +66,7 @@ def _heated(case: dict[str, Any]) -> bool:
 
 def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
     """Flow numbers with the viscosity at supply temperature and in the estimated warm film."""
-    table = grid(
-        "Cold, and warm (estimated)", "c um", "T C", "mPa s", "Reynolds", "Taylor"
-    )
+    table = grid("Cold, and warm (estimated)", "c um", "T C", "mPa s", "Reynolds", "Taylor")
     for case in filter(_heated, cases):
         clearance = number(case["radial_clearance"] * 1e6)
         table.add_row(
