@@ -1,17 +1,23 @@
 """Films over load, supply temperature and clearance; tolerances carried through the film."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scenario_texts import BEARING, BOTH_MODELS, OIL
 
+from rotorsim import solver
 from rotorsim.errors import InputError, ScenarioError
 from rotorsim.model import LoadTarget, MeshSize
 from rotorsim.pipeline.film_axes import changed, tabulate_over
+from rotorsim.pipeline.stability_figures import tolerance_figure
 from rotorsim.pipeline.tolerances import FilmThreshold, study_tolerances, tolerances_of
 from rotorsim.scenario import Scenario, ToleranceSettings
 from rotorsim.scenario.tolerances import parse_spread
 from rotorsim.solver import solve_case
 from rotorsim.stability import RigidShaft, rigid_threshold, stability_map, threshold_speeds
+from rotorsim.status import SolveStatus
 
 HEAD = f'title = "small"\n{BEARING}'
 GROOVE = """\
@@ -148,6 +154,34 @@ def test_tolerances_become_a_distribution():
     assert np.array_equal(unstable, outputs["threshold_speed"] < 1385.0)
     assert found.most_important == "radial_clearance"
     assert found.importance["radial_clearance"] < -0.5  # wider is worse
+
+
+@pytest.mark.parametrize("limit", [1.02e-4, 0.5e-4])
+def test_films_that_do_not_converge_are_told_apart(monkeypatch, limit):
+    def sometimes(case, speed, **options):
+        point, warm = solve_case(case, speed, **options)
+        if case.bearing.radial_clearance < limit:
+            return point, warm
+        return replace(point, status=SolveStatus.NOT_CONVERGED, message="limit reached"), warm
+
+    monkeypatch.setattr(solver, "solve_case", sometimes)
+    scenario = Scenario.from_text(PLAIN + TOLERANCES)
+    words = "film at 6000 rpm did not converge (not converged: limit reached)"
+    if limit < 1e-4:
+        with pytest.raises(InputError, match=re.escape(f"without any deviation the {words}")):
+            study_tolerances(scenario, thermal_model="isothermal", workers=1)
+        return
+    study = study_tolerances(scenario, thermal_model="isothermal", workers=1)
+    failed = [number for number, _ in study.samples.failures]
+    assert failed == list(np.flatnonzero(study.samples.inputs["radial_clearance"] >= limit))
+    assert 0 < len(failed) < 32
+    assert study.samples.failures[0][1] == f"the {words}"
+    figure = tolerance_figure(study, "pump")
+    said = f"{32 - len(failed)} samples; {len(failed)} more did not converge"
+    assert figure.get_suptitle() == f"pump\n{said}"
+    # The histogram counts what was solved.
+    assert "have none" not in figure.axes[1].get_title()
+    assert sum(patch.get_height() for patch in figure.axes[1].patches) == pytest.approx(100.0)
 
 
 def test_thresholds_of_a_sample_are_those_of_its_film():
