@@ -69,16 +69,17 @@ def summary_table(curves: Sequence[StabilityCurve]) -> Table:
 
 def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
     """One line for each orbit (see `pipeline.summary.describe_orbit`)."""
-    head = ["model", "run", "rpm", "turns", "max eps", "growth 1/s"]
+    head = ["model", "run", "rpm", "turns", "eps", "growth 1/s"]
     expected = any("eigenvalue_growth_rate" in row for row in rows)
-    head += ["eigenvalue", "outcome"] if expected else ["outcome"]
-    table = grid("Orbits", *head)
+    head += ["expected", "outcome"] if expected else ["outcome"]
+    by = "; expected: by the eigenvalues" if expected else ""
+    table = grid(f"Orbits (eps: the largest{by})", *head)
     for row in rows:
         first, last = (speed * RPM for speed in row["speed"])
         speeds = f"{last:.0f}" if math.isclose(first, last) else f"{first:.0f}-{last:.0f}"
         table.add_row(
             row["thermal_model"],
-            row["kind"],
+            row["kind"].removesuffix(" speed"),
             speeds,
             number(row["revolutions"]),
             number(row["max_eccentricity_ratio"], 3),

@@ -29,7 +29,7 @@ _COLUMNS = (
     ("h_min um", "min_film_thickness", 1e6),
     ("p_max MPa", "max_pressure", 1e-6),
     ("loss kW", "power_loss", 1e-3),
-    ("flow L/min", "side_flow", 6e4),
+    ("L/min", "side_flow", 6e4),
 )
 """Head, key and factor from SI of what isothermal and THD are compared by."""
 LEAST_WALL_SHARE = 0.005
@@ -71,7 +71,7 @@ def heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> T
         "model",
         *heads,
         "T_max C",
-        *(["M_crit kg"] if rigid else []),
+        *(["M_cr kg"] if rigid else []),
     )
     for row in rows:
         models = _models(row)

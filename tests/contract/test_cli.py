@@ -383,7 +383,7 @@ def test_run_shows_a_summary_that_fits_the_terminal(tiny, here):
     assert max(map(len, done.stdout.splitlines())) <= 100
     for words in ("8 film points, 8 converged", "by heating", "threshold rpm", "tiny.rrd"):
         assert words in done.stdout
-    for column in ("h_min um", "loss kW", "flow L/min", "M_crit kg"):
+    for column in ("h_min um", "loss kW", "L/min", "M_cr kg"):
         assert column in done.stdout
     table = done.stdout.split("At 15000 rpm")[1].split("Stability")[0]
     assert max(map(len, table.splitlines())) <= 90

@@ -45,7 +45,7 @@ def test_film_losses_flow_and_what_heating_makes_of_them():
 
 @pytest.mark.parametrize(("rigid", "there"), [(True, True), (False, False)])
 def test_no_critical_mass_beside_a_rotor_that_is_not_rigid(rigid, there):
-    assert ("M_crit" in shown(rigid=rigid)) == there
+    assert ("M_cr" in shown(rigid=rigid)) == there
 
 
 def test_the_part_of_the_heat_that_goes_through_the_walls():
