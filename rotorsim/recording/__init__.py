@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .contents import (
+from .contents import FilmSurface, OrbitTrack, RecordingContents
+from .pictures import (
     CascadePicture,
     EigenvaluePath,
-    FilmSurface,
     MapPicture,
-    OrbitTrack,
-    RecordingContents,
     SpectrumPicture,
     Verdict,
     classify,

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from .chart import HEIGHT, Chart, chart_bounds, log_labels, tick_text
 from .colormaps import ALARM, model_colour
-from .contents import EigenvaluePath, OrbitTrack, model_label
+from .contents import OrbitTrack, model_label
+from .pictures import EigenvaluePath
 from .timeline import RPM, distinct_speeds, speed_index, track_index, tracks_of
 
 ENTITY = "eigenvalues"

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from .chart import HEIGHT, WIDTH, Chart, chart_bounds, log_labels, tick_text
 from .colormaps import TEXT, colours
-from .contents import CascadePicture, MapPicture, OrbitTrack, Verdict, nearest
+from .contents import OrbitTrack
+from .pictures import CascadePicture, MapPicture, Verdict, nearest
 from .timeline import RPM, distinct_speeds, speed_index, track_index
 
 MICRO = 1e6

@@ -10,7 +10,8 @@ import rerun.blueprint as rrb
 
 from .chart import WIDTH, Chart, chart_bounds, log_labels
 from .colormaps import LINE, model_colour
-from .contents import SpectrumPicture, model_label
+from .contents import model_label
+from .pictures import SpectrumPicture
 
 ENTITY = "spectrum"
 MICRO = 1e6
