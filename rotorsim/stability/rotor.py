@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -239,7 +240,11 @@ def _read(source: Path) -> Mapping[str, Any]:
                 return {name: file[name] for name in file.files}
         from scipy.io import loadmat
 
-        return {name: v for name, v in loadmat(source).items() if not name.startswith("__")}
+        with warnings.catch_warnings():
+            # Whether sparse matrices come as SciPy's older kind or its newer one: both will do.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            found = loadmat(source)
+        return {name: value for name, value in found.items() if not name.startswith("__")}
     except OSError as error:
         reason = error.strerror or "it is damaged, or no such file"
         raise InputError(f"cannot be read: {reason}", source=source) from error
