@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .pipeline import record, simulate_orbit
     from .recording import open_viewer
     from .scenario import Scenario, load_scenario
-    from .shipped import shipped_scenarios
+    from .shipped import shipped_scenarios, shipped_tables
     from .solver import solve, solve_case
     from .stability import stability_map, state_space
     from .status import SolveStatus, Stability
@@ -49,6 +49,7 @@ __all__ = [
     "open_viewer",
     "record",
     "shipped_scenarios",
+    "shipped_tables",
     "simulate_orbit",
     "solve",
     "solve_case",
@@ -64,7 +65,7 @@ _HOMES = {
     "pipeline": ("record", "simulate_orbit"),
     "recording": ("open_viewer",),
     "scenario": ("Scenario", "load_scenario"),
-    "shipped": ("shipped_scenarios",),
+    "shipped": ("shipped_scenarios", "shipped_tables"),
     "solver": ("solve", "solve_case"),
     "stability": ("stability_map", "state_space"),
     "status": ("SolveStatus", "Stability"),

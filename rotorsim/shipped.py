@@ -1,10 +1,12 @@
-"""The scenarios that come with the program, in the source tree and in the installed package."""
+"""What comes with the program, in the source tree and in the installed package."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 _PACKAGE = Path(__file__).parent
+_TABLES = ("dal",)
+"""A source tree's folder of tables holds the user's own as well."""
 
 
 def shipped_scenarios() -> dict[str, Path]:
@@ -15,8 +17,29 @@ def shipped_scenarios() -> dict[str, Path]:
     >>> shipped_scenarios()["dal"].name
     'dal.toml'
     """
-    # The build copies them into the package; in the source tree they lie beside it.
-    for folder in (_PACKAGE / "data" / "scenarios", _PACKAGE.parent / "scenarios"):
-        if folder.is_dir():
-            return {path.stem: path for path in sorted(folder.glob("*.toml"))}
-    return {}
+    return {path.stem: path for path in sorted(_folder("scenarios").glob("*.toml"))}
+
+
+def shipped_tables() -> dict[str, Path]:
+    """Files of the shipped coefficient tables by name.
+
+    Examples
+    --------
+    >>> shipped_tables()["dal"].name
+    'dal.nc'
+    """
+    folder = _folder("coefficients")
+    return {name: folder / f"{name}.nc" for name in _TABLES if (folder / f"{name}.nc").is_file()}
+
+
+def shipped_file(name: str) -> Path | None:
+    """File behind a name as it is typed: ``dal`` is a scenario, ``dal.nc`` a table."""
+    if name.endswith(".nc"):
+        return shipped_tables().get(name.removesuffix(".nc"))
+    return shipped_scenarios().get(name)
+
+
+def _folder(name: str) -> Path:
+    # The build copies it into the package; in the source tree it lies beside it.
+    inside = _PACKAGE / "data" / name
+    return inside if inside.is_dir() else _PACKAGE.parent / name

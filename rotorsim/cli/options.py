@@ -7,12 +7,12 @@ from typing import Annotated
 
 import typer
 
-from ..shipped import shipped_scenarios
+from ..shipped import shipped_file
 
 
 def file_or_shipped(path: Path) -> Path:
-    """`path`; or where there is no such file, the shipped scenario of that name."""
-    return path if path.exists() else shipped_scenarios().get(str(path), path)
+    """`path`; or where there is no such file, the shipped scenario or table of that name."""
+    return path if path.exists() else shipped_file(str(path)) or path
 
 
 ScenarioArgument = Annotated[

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import strict
 
 import rotorsim as rs
 from rotorsim.stability import threshold_speeds
@@ -15,7 +16,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="module")
 def table() -> rs.CoefficientTable:
-    return rs.CoefficientTable.load(ROOT / "coefficients" / "dal.nc")
+    return rs.CoefficientTable.load(rs.shipped_tables()["dal"])
 
 
 def test_it_is_the_shipped_scenarios(table):
@@ -50,3 +51,13 @@ def test_pinned_thresholds(table):
         assert [t.speed * 30.0 / np.pi for t in found] == pytest.approx([rpm], rel=1e-3)
     one = table.select(thermal_model="isothermal", radial_clearance=100e-6)
     assert not threshold_speeds(one, mass=1200.0)
+
+
+def test_it_is_found_by_name_wherever_one_is(here):
+    done = here("stability", "dal.nc", "--mass", "1200 kg", "--model", "thd", "--json")
+    assert done.returncode == 0, done.stderr
+    said = strict(done.stdout)["curves"]
+    lowest = min(one["threshold_speeds"][0] for one in said)
+    assert lowest * 30.0 / np.pi == pytest.approx(5060.0, abs=5.0)
+    done = here("stability", "nobody.nc", "--json")
+    assert done.returncode == 2
