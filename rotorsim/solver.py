@@ -316,12 +316,10 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
         )
         bush, shaft = thermal.heat.bush, thermal.heat.shaft
 
-    def whole(field: Array) -> Array:
-        return np.concatenate([field[:, ::-1], field], axis=1) if mesh.half else field
-
+    whole = mesh.whole
     return FilmFields(
         theta=mesh.theta + solution.frame,
-        y=np.concatenate([-mesh.y[::-1], mesh.y]) if mesh.half else mesh.y,
+        y=mesh.whole_y,
         z=(np.arange(layers) + 0.5) / layers,
         film_thickness=whole(state.thickness.center),
         pressure=whole(state.solution.pressure),

@@ -28,3 +28,18 @@ BOTH_MODELS = """\
 models = ["isothermal", "thd"]
 ambient_temperature = "40 degC"
 """
+
+SMALL = f"""\
+{BEARING}
+{CONSTANT_OIL}
+[film]
+mesh = {{ circumferential = 32, axial = 8 }}
+[operating]
+speed = ["6000 rpm", "9000 rpm"]
+eccentricity_ratio = 0.5
+[rotor]
+mass = "1200 kg"
+[orbit]
+speed = "9000 rpm"
+"""
+"""A whole scenario, of a few short film solutions; more keys of its orbit may follow."""

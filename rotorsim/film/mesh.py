@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,15 @@ class FilmMesh:
     slot: NDArray[np.bool_]
     region: NDArray[np.int64]
     radius: float
+
+    def whole(self, field: NDArray[Any]) -> NDArray[Any]:
+        """Field (n, m, ...) over the whole length, of a mesh that may hold one half of it."""
+        return np.concatenate([field[:, ::-1], field], axis=1) if self.half else field
+
+    @property
+    def whole_y(self) -> NDArray[np.float64]:
+        """Axial cell centres over the whole length [m]."""
+        return np.concatenate([-self.y[::-1], self.y]) if self.half else self.y
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -53,8 +53,8 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmSurface]:
                 name=orbit.thermal_model,
                 speed=float(orbit.speed[row]),
                 theta=mesh.theta + solution.frame,
-                y=np.concatenate([-mesh.y[::-1], mesh.y]) if mesh.half else mesh.y,
-                pressure=_whole(state.solution.pressure, mesh.half),
+                y=mesh.whole_y,
+                pressure=mesh.whole(state.solution.pressure),
                 temperature=temperature,
                 journal_radius=case.bearing.journal_radius,
                 radial_clearance=case.bearing.radial_clearance,
@@ -92,9 +92,4 @@ def _mean_temperature(solution: FilmSolution) -> NDArray[np.float64] | None:
     if solution.thermal is None:
         return None
     mean = solution.thermal.heat.temperature.mean(axis=2)
-    return _whole(mean, solution.problem.mesh.half)
-
-
-def _whole(field: NDArray[np.float64], half: bool) -> NDArray[np.float64]:
-    """Both halves of a symmetric film."""
-    return np.concatenate([field[:, ::-1], field], axis=1) if half else field
+    return solution.problem.mesh.whole(mean)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
+from ..drawing import STANDARD_GRAVITY
 from ..errors import InputError, RotorsimError
 from ..model.rotor import rigid_mass
 from ..scenario.settings import OrbitForce, SpeedRamp
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 Announce = Callable[[str], None]
-GRAVITY = 9.80665
-"""[m/s2]"""
 MAP_CELLS = 241
 """Along each axis of the stability map."""
 FILM_FRAMES = 12
@@ -209,7 +208,7 @@ def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
     known = top.critical_mass[np.isfinite(top.critical_mass)]
     if not known.size and "load" in table.dataset:
         load = table.dataset["load"].values
-        known = load[np.isfinite(load) & (load > 0.0)] / GRAVITY
+        known = load[np.isfinite(load) & (load > 0.0)] / STANDARD_GRAVITY
     if not known.size:
         raise InputError("needs masses: no mass is critical here", key="stability.mass")
     return float(np.median(known))

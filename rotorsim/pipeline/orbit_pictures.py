@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError
-from .recordings import orbit_tracks
+from .recordings import heading, orbit_tracks, track_names
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +56,7 @@ def orbit_figures(
     from ..orbit import cascade
 
     yield "orbits", plots.orbit_plot(orbit_pictures(orbits), title, steady_only)
-    for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
+    for orbit, name in zip(orbits, track_names(orbits), strict=True):
         if orbit.constant_speed:
             continue
         try:
@@ -66,10 +66,10 @@ def orbit_figures(
             continue
         order = np.argsort(rows.speed)
         yield (
-            f"cascade_{track.name}",
+            f"cascade_{name}",
             plots.spectrum_cascade(
                 rows.speed[order], rows.frequency[order], rows.amplitude[order],
-                f"{title}\n{track.heading}",
+                f"{title}\n{heading(name)}",
             ),
         )  # fmt: skip
 
@@ -95,7 +95,7 @@ def write_animation(
     shown = [
         MovingOrbit(
             name=orbit.thermal_model,
-            title=track.heading,
+            title=heading(name),
             time=orbit.t,
             revolutions=orbit.revolutions,
             speed=orbit.speed,
@@ -106,6 +106,6 @@ def write_animation(
             equilibrium=np.asarray(orbit.equilibrium),
             boundary=orbit.boundary,
         )
-        for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True)
+        for orbit, name in zip(orbits, track_names(orbits), strict=True)
     ]
     return animate_orbits(shown, path, title, slow_only=steady_only)

@@ -58,11 +58,11 @@ def orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None =
     """
     rows = [describe_orbit(orbit) for orbit in orbits] if rows is None else rows
     lines: list[str] = []
-    for orbit, track, row in zip(orbits, orbit_tracks(orbits), rows, strict=True):
+    for orbit, name, row in zip(orbits, track_names(orbits), rows, strict=True):
         first, last = (round(speed * RPM) for speed in row["speed"])
         rpm = f"{first} rpm" if first == last else f"{first} to {last} rpm"
         lines.append(
-            f"- **{track.heading}, {rpm}, {row['revolutions']:.4g} turns:"
+            f"- **{heading(name)}, {rpm}, {row['revolutions']:.4g} turns:"
             f" {orbit.status.value.replace('_', ' ')}**"
         )
         lines += [f"  - {fact}" for fact in _seen(row)]
@@ -105,7 +105,7 @@ def spectrum_pictures(orbits: Sequence[Orbit]) -> list[SpectrumPicture]:
     from ..recording import SpectrumPicture
 
     pictures = []
-    for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
+    for orbit, name in zip(orbits, track_names(orbits), strict=True):
         if not orbit.constant_speed or orbit.status is OrbitStatus.SETTLED or not orbit.t.size:
             continue
         try:
@@ -114,7 +114,7 @@ def spectrum_pictures(orbits: Sequence[Orbit]) -> list[SpectrumPicture]:
             continue
         pictures.append(
             SpectrumPicture(
-                name=track.name,
+                name=name,
                 speed=float(orbit.speed[0]),
                 frequency=found.frequency,
                 amplitude=found.forward + found.backward,
@@ -130,7 +130,7 @@ def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
     from ..recording import CascadePicture
 
     pictures = []
-    for orbit, track in zip(orbits, orbit_tracks(orbits), strict=True):
+    for orbit, name in zip(orbits, track_names(orbits), strict=True):
         if orbit.constant_speed:
             continue
         try:
@@ -143,43 +143,48 @@ def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
         frequency = np.linspace(0.0, 2.0 * float(rows.speed.max()), CASCADE_LINES)
         known = zip(rows.frequency[order], rows.amplitude[order], strict=True)
         amplitude = np.array([np.interp(frequency, f, a, right=0.0) for f, a in known])
-        pictures.append(CascadePicture(track.heading, rows.speed[order], frequency, amplitude))
+        pictures.append(CascadePicture(heading(name), rows.speed[order], frequency, amplitude))
     return pictures
 
 
-def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
-    """Tracks of `orbits`, named by thermal model, and numbered where that is not enough."""
-    from ..recording import OrbitTrack
-
-    tracks: list[OrbitTrack] = []
+def track_names(orbits: Sequence[Orbit]) -> list[str]:
+    """Name `orbits` by thermal model and run, and number them where that is not enough."""
+    names: list[str] = []
     for orbit in orbits:
         run = "run_up" if orbit.speed[-1] > orbit.speed[0] else "coast_down"
         base = orbit.thermal_model if orbit.constant_speed else f"{orbit.thermal_model}_{run}"
-        taken = [track.name for track in tracks]
         name, number = base, 2
-        while name in taken:
+        while name in names:
             name, number = f"{base}_{number}", number + 1
-        tracks.append(
-            OrbitTrack(
-                name=name,
-                time=orbit.t,
-                x=orbit.x,
-                y=orbit.y,
-                angle=orbit.angle,
-                speed=orbit.speed,
-                radial_clearance=orbit.radial_clearance,
-                equilibrium=np.asarray(orbit.equilibrium),
-                force=np.column_stack([orbit.fx, orbit.fy]),
-                load=orbit.load if np.any(orbit.load) else None,
-                actuator_force=orbit.actuator_force if orbit.actuated else None,
-                disc=orbit.displacements[:, 2:4] if orbit.displacements.shape[1] > 2 else None,
-                minimum_film=orbit.min_film,
-                boundary=orbit.boundary,
-                once_per_turn=once_per_turn(orbit),
-                title=_heading(name),
-            )
+        names.append(name)
+    return names
+
+
+def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
+    """Tracks of `orbits`, called by their `track_names`."""
+    from ..recording import OrbitTrack
+
+    return [
+        OrbitTrack(
+            name=name,
+            time=orbit.t,
+            x=orbit.x,
+            y=orbit.y,
+            angle=orbit.angle,
+            speed=orbit.speed,
+            radial_clearance=orbit.radial_clearance,
+            equilibrium=np.asarray(orbit.equilibrium),
+            force=np.column_stack([orbit.fx, orbit.fy]),
+            load=orbit.load if np.any(orbit.load) else None,
+            actuator_force=orbit.actuator_force if orbit.actuated else None,
+            disc=orbit.displacements[:, 2:4] if orbit.displacements.shape[1] > 2 else None,
+            minimum_film=orbit.min_film,
+            boundary=orbit.boundary,
+            once_per_turn=once_per_turn(orbit),
+            title=heading(name),
         )
-    return tracks
+        for orbit, name in zip(orbits, track_names(orbits), strict=True)
+    ]
 
 
 def once_per_turn(orbit: Orbit) -> np.ndarray | None:
@@ -197,6 +202,7 @@ def once_per_turn(orbit: Orbit) -> np.ndarray | None:
     return np.column_stack([points.x, points.y])
 
 
-def _heading(name: str) -> str:
+def heading(name: str) -> str:
+    """Write a track's name for people."""
     words = name.replace("_", " ").replace("run up", "run-up").replace("coast down", "coast-down")
     return words.replace("thd", "THD")

@@ -38,6 +38,8 @@ class Series:
         Track -> (n,) array, or (n, 2) for x and y, in that unit; None where the track has none.
     low, high : float, optional
         Vertical range that holds for every track; what is left open follows the data.
+    needs : str
+        Field of the track without which it has none; empty: every track has the series.
     """
 
     entity: str
@@ -45,6 +47,11 @@ class Series:
     values: Callable[[OrbitTrack], Array | None]
     low: float | None = None
     high: float | None = None
+    needs: str = ""
+
+    def of(self, track: OrbitTrack) -> bool:
+        """Whether the track has it."""
+        return not self.needs or getattr(track, self.needs) is not None
 
 
 def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
@@ -88,11 +95,12 @@ def _disc(track: OrbitTrack) -> Array | None:
 
 
 DISPLACEMENT = Series("displacement_um", "Displacement x, y [µm]", _displacement)
-DISC = Series("disc_displacement_um", "Displacement of the disc x, y [µm]", _disc)
-LOAD = Series("load_N", "Load on the rotor x, y [N]", lambda track: track.load)
+DISC = Series("disc_displacement_um", "Displacement of the disc x, y [µm]", _disc, needs="disc")
+LOAD = Series("load_N", "Load on the rotor x, y [N]", lambda track: track.load, needs="load")
 ACTUATOR_FORCE = Series(
-    "actuator_force_N", "Actuator force x, y [N]", lambda track: track.actuator_force
-)
+    "actuator_force_N", "Actuator force x, y [N]", lambda track: track.actuator_force,
+    needs="actuator_force",
+)  # fmt: skip
 ECCENTRICITY = Series(
     "eccentricity_ratio", "Eccentricity ratio [-]", lambda track: track.eccentricity_ratio,
     0.0, 1.05,
@@ -144,7 +152,7 @@ def log_series(stream: rr.RecordingStream, track: OrbitTrack) -> None:
 
 def series_of(tracks: Sequence[OrbitTrack], wanted: Sequence[Series] = ALL_SERIES) -> list[Series]:
     """Those of the wanted series that the tracks have."""
-    return [one for one in wanted if any(one.values(track) is not None for track in tracks)]
+    return [one for one in wanted if any(one.of(track) for track in tracks)]
 
 
 def series_view(series: Series, tracks: Sequence[OrbitTrack]) -> rrb.TimeSeriesView:

@@ -192,7 +192,7 @@ def test_coefficients_of_another_program_run_in_time(call, here, tmp_path):
 def _as_csv(here, tmp_path) -> Path:
     from rotorsim.table import CoefficientTable
 
-    one = CoefficientTable.load(tmp_path / "coefficients" / "linear.nc").select()
+    one = CoefficientTable.load(tmp_path / "coefficients" / "linear.nc")
     k, c = one.stiffness.reshape(-1, 4), one.damping.reshape(-1, 4)
     path = tmp_path / "numbers.csv"
     np.savetxt(path, np.column_stack([one.speeds, k, c]), delimiter=",", header="x")

@@ -13,23 +13,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import CommandLine, strict
-from scenario_texts import BEARING, CONSTANT_OIL
+from scenario_texts import SMALL
 
 ROOT = Path(__file__).parents[2]
 TINY = f"""\
 title = "tiny"
-{BEARING}
-{CONSTANT_OIL}
-[film]
-mesh = {{ circumferential = 32, axial = 8 }}
-[operating]
-speed = ["6000 rpm", "9000 rpm"]
-eccentricity_ratio = 0.5
-[rotor]
-mass = "1200 kg"
-[orbit]
-speed = "9000 rpm"
-revolutions = 4
+{SMALL}revolutions = 4
 initial_displacement = ["1 um", "0 um"]
 """
 

@@ -6,30 +6,16 @@ from pathlib import Path
 
 import pytest
 from command_line import CommandLine
-from scenario_texts import BEARING, CONSTANT_OIL
+from scenario_texts import SMALL
 
 import rotorsim as rs
 from rotorsim.errors import InputError, TableError
-
-SCENARIO = f"""\
-{BEARING}
-{CONSTANT_OIL}
-[film]
-mesh = {{ circumferential = 32, axial = 8 }}
-[operating]
-speed = ["6000 rpm", "9000 rpm"]
-eccentricity_ratio = 0.5
-[rotor]
-mass = "1200 kg"
-[orbit]
-speed = "9000 rpm"
-"""
 
 
 @pytest.fixture
 def scenario(tmp_path: Path) -> Path:
     path = tmp_path / "q.toml"
-    path.write_text(SCENARIO, encoding="utf-8")
+    path.write_text(SMALL, encoding="utf-8")
     return path
 
 
@@ -50,7 +36,7 @@ def test_outputs_are_named_as_what_they_are(command, file, said, here: CommandLi
     assert done.stderr.startswith("error: --output: must end in")
     assert said in done.stderr
     assert f"(found: '{file}')" in done.stderr
-    assert scenario.read_text(encoding="utf-8") == SCENARIO
+    assert scenario.read_text(encoding="utf-8") == SMALL
     assert [entry.name for entry in scenario.parent.iterdir()] == ["q.toml"]
 
 
@@ -60,7 +46,7 @@ def test_no_output_replaces_the_input_whatever_its_name(command, suffix, here, s
     done = here(command, mine.name, "-o", f"./{mine.name}")
     assert done.returncode == 2
     assert "--output: is the input itself" in done.stderr
-    assert mine.read_text(encoding="utf-8") == SCENARIO
+    assert mine.read_text(encoding="utf-8") == SMALL
 
 
 def test_a_recording_is_named_as_one(tmp_path: Path) -> None:

@@ -140,7 +140,8 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
     """Of the rotor, else of the critical masses, else of what weighs as much as the load."""
     from dataclasses import replace
 
-    from rotorsim.pipeline.main_job import GRAVITY, map_of
+    from rotorsim.drawing import STANDARD_GRAVITY
+    from rotorsim.pipeline.main_job import map_of
 
     table = as_table(points, scenario)
     alone = replace(scenario, rotor=None)
@@ -153,7 +154,7 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
     for mass, case, known in (
         (2000.0, scenario, table),
         (critical, alone, table),
-        (load / GRAVITY, alone, stable),
+        (load / STANDARD_GRAVITY, alone, stable),
     ):
         found = map_of(case, known).dataset["mass"].values
         assert found.mean() == pytest.approx(1.525 * mass, rel=1e-6)
