@@ -233,7 +233,7 @@ def min_film_thickness(solution: FilmSolution) -> float:
     bearing, state = solution.problem.bearing, solution.state
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance - math.hypot(*state.position)
-    return state.thickness.minimum(~state.operator.held)
+    return state.thickness.minimum(~state.operator.fixed)
 
 
 def _rotation(angle: float) -> Array:
@@ -258,7 +258,7 @@ def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float
     if thermal is None:
         supply = solution.problem.thermal.supply_temperature
         return supply, supply
-    film = ~state.operator.held
+    film = ~state.operator.fixed
     weight = (state.thickness.center * state.operator.area * fraction * film)[:, :, None]
     temperature = thermal.heat.temperature
     total = float(np.sum(weight)) * temperature.shape[2]

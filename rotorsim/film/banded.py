@@ -47,26 +47,26 @@ class FilmFactor:
 
 def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
     """Factor the conductance matrix restricted to the `active` cells."""
-    order, folded = column_order(operator.linked, active)
+    order, folded = column_order(operator.interior, active)
     n, m = active.shape
     width = (2 * m if folded else m) if order.size > 1 else m - 1
     width = min(width, order.size * m - 1)
     band = np.zeros((order.size * m, width + 1))
     position = np.full(n, -1, dtype=np.int64)
     position[order] = np.arange(order.size)
-    _fill_band(operator.conductance, operator.linked, active, order, position, band)
+    _fill_band(operator.conductance, operator.interior, active, order, position, band)
     pivot = _cholesky(band)
     if pivot:
         raise SingularFilmError(f"the film's matrix is not positive definite (pivot {pivot})")
     return FilmFactor(factor=band, order=order, active=active)
 
 
-def column_order(linked: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
+def column_order(interior: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
     """Columns in band order, and whether the ring had to be folded."""
     n = active.shape[0]
     used: Flags = np.logical_or.reduce(active, axis=1)
     before = np.roll(active, 1, axis=0)
-    joined = np.any(linked[0] & active & before, axis=1)  # to the column before
+    joined = np.any(interior[0] & active & before, axis=1)  # to the column before
     cuts = np.flatnonzero(~joined)
     if cuts.size:
         order = (cuts[0] + np.arange(n)) % n
@@ -78,7 +78,7 @@ def column_order(linked: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]
 
 
 @kernel
-def _fill_band(conductance, linked, active, order, position, band):
+def _fill_band(conductance, interior, active, order, position, band):
     n, m = active.shape
     for c in range(order.size):
         i = order[c]
@@ -93,11 +93,11 @@ def _fill_band(conductance, linked, active, order, position, band):
             for face in range(4):
                 diagonal += conductance[face, i, j]
             band[column, 0] = diagonal
-            if j + 1 < m and linked[3, i, j] and active[i, j + 1]:
+            if j + 1 < m and interior[3, i, j] and active[i, j + 1]:
                 band[column, 1] -= conductance[3, i, j]
-            if linked[0, i, j] and active[before, j] and position[before] > c:
+            if interior[0, i, j] and active[before, j] and position[before] > c:
                 band[column, (position[before] - c) * m] -= conductance[0, i, j]
-            if linked[1, i, j] and active[after, j] and position[after] > c:
+            if interior[1, i, j] and active[after, j] and position[after] > c:
                 band[column, (position[after] - c) * m] -= conductance[1, i, j]
 
 

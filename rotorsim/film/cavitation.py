@@ -54,7 +54,7 @@ class PressureSolution:
     liquid : (n, m) array or None
         Liquid fraction, where the rupture model gives it (``jfo``).
     violations : int
-        Cells that break the rupture condition because their state was held.
+        Cells that break the rupture condition because their state was given.
     """
 
     pressure: Array
@@ -93,16 +93,16 @@ def solve_pressure(
         The full cells, taken as given: one linear solve, `violations` telling what it leaves.
     """
     source = source_term(operator, squeeze)
-    film = ~operator.held
+    film = ~operator.fixed
     if cavitation in (Cavitation.FULL_SOMMERFELD, Cavitation.HALF_SOMMERFELD):
         factor = factor_operator(operator, film)
-        pressure = _with_held(operator, factor.solve(source))
+        pressure = _with_fixed(operator, factor.solve(source))
         if cavitation is Cavitation.HALF_SOMMERFELD:
-            kept = np.where(operator.held, pressure, np.maximum(pressure, 0.0))
+            kept = np.where(operator.fixed, pressure, np.maximum(pressure, 0.0))
             full = film & (kept > 0.0)
             if frozen is not None:
                 full = frozen
-                kept = np.where(full | operator.held, pressure, 0.0)
+                kept = np.where(full | operator.fixed, pressure, 0.0)
             return PressureSolution(kept, pressure, full, factor, 1, True)
         return PressureSolution(pressure, pressure, film, factor, 1, True)
     if frozen is not None:
@@ -112,7 +112,7 @@ def solve_pressure(
     if region is None:
         return solution
     allowed = film.copy()
-    _one_stretch(solution.pressure, operator.held, operator.linked[0], region, allowed)
+    _one_stretch(solution.pressure, operator.fixed, operator.interior[0], region, allowed)
     if (solution.full & ~allowed).any():
         again = _active_set(operator, source, allowed, solution.full & allowed)
         return replace(again, steps=solution.steps + again.steps)
@@ -127,10 +127,10 @@ def coarse_guess(operator: FilmOperator, source: Array) -> Flags:
     """
     n, m = source.shape
     if n % 2 or m % 2 or n < 2 * COARSEST or m < 4:
-        return ~operator.held
+        return ~operator.fixed
     coarse = _coarsened(operator)
     summed = source.reshape(n // 2, 2, m // 2, 2).sum(axis=(1, 3))
-    film = ~coarse.held
+    film = ~coarse.fixed
     solution = _active_set(coarse, summed, film, coarse_guess(coarse, summed) & film)
     return np.repeat(np.repeat(solution.full, 2, axis=0), 2, axis=1)
 
@@ -151,43 +151,48 @@ def _coarsened(operator: FilmOperator) -> FilmOperator:
     conductance = 0.5 * np.stack(
         [f.sum(axis=2) for f in (along(west), along(east), around(south), around(north))]
     )
-    west, east, south, north = outer_faces(operator.linked)
-    linked = np.stack(
+    west, east, south, north = outer_faces(operator.interior)
+    interior = np.stack(
         [f.all(axis=2) for f in (along(west), along(east), around(south), around(north))]
     )
-    west, east, south, north = outer_faces(operator.outer_pressure)
+    west, east, south, north = outer_faces(operator.fixed_pressure)
     pressure = np.stack(
         [f.mean(axis=2) for f in (along(west), along(east), around(south), around(north))]
     )
-    n, m = operator.held.shape
-    held = operator.held.reshape(n // 2, 2, m // 2, 2).any(axis=(1, 3))
-    drag = np.stack(
-        [along(operator.drag[0, 0::2]).sum(axis=2), along(operator.drag[1, 1::2]).sum(axis=2)]
+    n, m = operator.fixed.shape
+    fixed = operator.fixed.reshape(n // 2, 2, m // 2, 2).any(axis=(1, 3))
+    couette = np.stack(
+        [along(operator.couette[0, 0::2]).sum(axis=2), along(operator.couette[1, 1::2]).sum(axis=2)]
     )
-    beside = (np.roll(held, 1, 0), np.roll(held, -1, 0), np.roll(held, 1, 1), np.roll(held, -1, 1))
+    beside = (
+        np.roll(fixed, 1, 0),
+        np.roll(fixed, -1, 0),
+        np.roll(fixed, 1, 1),
+        np.roll(fixed, -1, 1),
+    )
     return replace(
         operator,
         conductance=conductance,
-        linked=linked & ~held & ~np.stack(beside),
-        outer_pressure=pressure,
-        drag=drag,
-        held=held,
+        interior=interior & ~fixed & ~np.stack(beside),
+        fixed_pressure=pressure,
+        couette=couette,
+        fixed=fixed,
     )
 
 
 def source_term(operator: FilmOperator, squeeze: Array | None = None) -> Array:
-    """Right-hand side [m3/s]: drag, known pressures and squeeze."""
-    source = operator.drag[0] - operator.drag[1]
+    """Right-hand side [m3/s]: Couette flow, known pressures and squeeze."""
+    source = operator.couette[0] - operator.couette[1]
     source = source + np.sum(
-        np.where(operator.linked, 0.0, operator.conductance * operator.outer_pressure), axis=0
+        np.where(operator.interior, 0.0, operator.conductance * operator.fixed_pressure), axis=0
     )
     if squeeze is not None:
         source = source - squeeze * operator.area
-    return np.where(operator.held, 0.0, source)
+    return np.where(operator.fixed, 0.0, source)
 
 
-def _with_held(operator: FilmOperator, pressure: Array) -> Array:
-    return np.where(operator.held, operator.outer_pressure[0], pressure)
+def _with_fixed(operator: FilmOperator, pressure: Array) -> Array:
+    return np.where(operator.fixed, operator.fixed_pressure[0], pressure)
 
 
 def _active_set(
@@ -204,7 +209,7 @@ def _active_set(
         steps += 1
         update = np.empty_like(full)
         changed = _update_set(
-            operator.conductance, operator.linked, source, pressure, full, allowed,
+            operator.conductance, operator.interior, source, pressure, full, allowed,
             1e-13 * scale, update,
         )  # fmt: skip
         if changed == 0:
@@ -216,11 +221,11 @@ def _active_set(
         factor = factor_operator(operator, full)
     if factor is None or not full.any():
         # No cell is pushed: the whole film is ruptured, which is the solution.
-        factor = factor_operator(operator, ~operator.held)
+        factor = factor_operator(operator, ~operator.fixed)
         empty = np.zeros_like(allowed)
-        nothing = _with_held(operator, np.zeros_like(source))
+        nothing = _with_fixed(operator, np.zeros_like(source))
         return PressureSolution(nothing, nothing, empty, factor, steps, True)
-    pressure = _with_held(operator, pressure)
+    pressure = _with_fixed(operator, pressure)
     return PressureSolution(pressure, pressure, full, factor, steps, converged)
 
 
@@ -230,14 +235,14 @@ def _on_frozen_set(operator: FilmOperator, source: Array, full: Flags) -> Pressu
     update = np.empty_like(full)
     tolerance = 1e-13 * float(np.abs(source).max())
     violations = _update_set(
-        operator.conductance, operator.linked, source, pressure, full, full, tolerance, update
+        operator.conductance, operator.interior, source, pressure, full, full, tolerance, update
     )
-    raw = _with_held(operator, pressure)
+    raw = _with_fixed(operator, pressure)
     return PressureSolution(raw, raw, full, factor, 1, True, violations=int(violations))
 
 
 @kernel
-def _update_set(conductance, linked, source, pressure, full, allowed, tolerance, update):
+def _update_set(conductance, interior, source, pressure, full, allowed, tolerance, update):
     """Next guess of the full cells; returns how many changed."""
     n, m = full.shape
     changed = 0
@@ -251,13 +256,13 @@ def _update_set(conductance, linked, source, pressure, full, allowed, tolerance,
                 keep = False
             else:
                 inflow = source[i, j]
-                if linked[0, i, j]:
+                if interior[0, i, j]:
                     inflow += conductance[0, i, j] * pressure[before, j]
-                if linked[1, i, j]:
+                if interior[1, i, j]:
                     inflow += conductance[1, i, j] * pressure[after, j]
-                if linked[2, i, j]:
+                if interior[2, i, j]:
                     inflow += conductance[2, i, j] * pressure[i, j - 1]
-                if linked[3, i, j]:
+                if interior[3, i, j]:
                     inflow += conductance[3, i, j] * pressure[i, j + 1]
                 keep = inflow > tolerance
             update[i, j] = keep
@@ -267,7 +272,7 @@ def _update_set(conductance, linked, source, pressure, full, allowed, tolerance,
 
 
 @kernel
-def _one_stretch(pressure, held, joined, region, allowed):
+def _one_stretch(pressure, fixed, joined, region, allowed):
     """Forbid, on each line and in each region, full stretches other than the one with the peak.
 
     A stretch that touches a groove under pressure is fed by it and stays, and so does one that
@@ -287,17 +292,17 @@ def _one_stretch(pressure, held, joined, region, allowed):
             while offset + length < n and region[(first + offset + length) % n] == region[i0]:
                 length += 1
             if region[i0] >= 0:
-                _keep_peak(pressure, held, joined, allowed, first + offset, length, j)
+                _keep_peak(pressure, fixed, joined, allowed, first + offset, length, j)
             offset += length
 
 
 @kernel
-def _keep_peak(pressure, held, joined, allowed, start, length, j):
+def _keep_peak(pressure, fixed, joined, allowed, start, length, j):
     n = pressure.shape[0]
     peak, at = 0.0, -1
     for s in range(length):
         i = (start + s) % n
-        if not held[i, j] and pressure[i, j] > peak:
+        if not fixed[i, j] and pressure[i, j] > peak:
             peak, at = pressure[i, j], s
     if at < 0:
         return
@@ -314,14 +319,14 @@ def _keep_peak(pressure, held, joined, allowed, start, length, j):
             continue
         end, fed = s, False
         while end < length and pressure[(start + end) % n, j] > 0.0:
-            fed = fed or held[(start + end) % n, j]
+            fed = fed or fixed[(start + end) % n, j]
             end += 1
         before, behind = (start + s - 1) % n, (start + end) % n
         first, last = s == 0, end == length
         fed = fed or (first and joined[i, j] and pressure[before, j] > 0.0)
         fed = fed or (last and joined[behind, j] and pressure[behind, j] > 0.0)
-        fed = fed or (held[before, j] and pressure[before, j] > 0.0)
-        fed = fed or (held[behind, j] and pressure[behind, j] > 0.0)
+        fed = fed or (fixed[before, j] and pressure[before, j] > 0.0)
+        fed = fed or (fixed[behind, j] and pressure[behind, j] > 0.0)
         if not fed:
             for t in range(s, end):
                 allowed[(start + t) % n, j] = False

@@ -49,7 +49,7 @@ class EnergyProblem:
     layers : LayerIntegrals
     heating : (3, n, m) array
         Multipliers of the three parts of the dissipation of a layer (see `dissipation`).
-    carried : (n, m) array
+    carry_over : (n, m) array
         Part of the oil entering through the west face that comes from the column before; the rest
         has the inlet's temperature.
     conductance : (n, m) array
@@ -60,8 +60,8 @@ class EnergyProblem:
         Columns in the order of the march.
     axial_order : (m,) int array
         From where the flow along the axis starts, outwards.
-    held : (n, m) bool array
-    linked : (4, n, m) bool array
+    fixed : (n, m) bool array
+    interior : (4, n, m) bool array
     dx, dy : arrays
         Cell lengths [m].
     """
@@ -69,13 +69,13 @@ class EnergyProblem:
     flow: FilmFlow
     layers: LayerIntegrals
     heating: Array
-    carried: Array
+    carry_over: Array
     conductance: Array
     heat_capacity: float
     order: NDArray[np.int64]
     axial_order: NDArray[np.int64]
-    held: NDArray[np.bool_]
-    linked: NDArray[np.bool_]
+    fixed: NDArray[np.bool_]
+    interior: NDArray[np.bool_]
     dx: Array
     dy: Array
 
@@ -100,8 +100,8 @@ def dissipation(
     """
     heating = np.zeros((3, *operator.area.shape))
     _heating(
-        operator.linked, operator.conductance, operator.face_thickness, operator.gap,
-        operator.held, operator.area, operator.dx, operator.dy, film.center, layers.f0,
+        operator.interior, operator.conductance, operator.face_thickness, operator.spacing,
+        operator.fixed, operator.area, operator.dx, operator.dy, film.center, layers.f0,
         flow.step, flow.liquid_fraction, surface_speed, heating,
     )  # fmt: skip
     return heating
@@ -109,21 +109,34 @@ def dissipation(
 
 @kernel
 def _heating(
-    linked, conductance, face_h, gap, held, area, dx, dy, h, f0, step, fraction, speed, heating
+    interior,
+    conductance,
+    face_h,
+    spacing,
+    fixed,
+    area,
+    dx,
+    dy,
+    h,
+    f0,
+    step,
+    fraction,
+    speed,
+    heating,
 ):
     n, m = area.shape
     for i in range(n):
         for j in range(m):
-            if held[i, j]:
+            if fixed[i, j]:
                 continue
             for face in range(4):
                 if conductance[face, i, j] == 0.0:
                     continue
-                share = 0.5 if linked[face, i, j] else 1.0
+                share = 0.5 if interior[face, i, j] else 1.0
                 width = dy[j] if face < 2 else dx[i]
                 thickness, rise = face_h[face, i, j], step[face, i, j]
                 # int over the face's reach of h^3 p'^2, and of h p'
-                heating[2, i, j] += share * thickness**3 * rise * rise * width / gap[face, i, j]
+                heating[2, i, j] += share * thickness**3 * rise * rise * width / spacing[face, i, j]
                 if face < 2:
                     heating[1, i, j] += 2.0 * speed * share * thickness * rise * width / f0[i, j]
             heating[0, i, j] = (
@@ -177,11 +190,11 @@ def march(
         leaving = np.stack([temperature, temperature])
     for _ in range(passes):
         change = _sweep(
-            flow.drive, flow.drag, flow.shared, flow.inlet, problem.carried,
+            flow.poiseuille, flow.couette, flow.shared, flow.inlet, problem.carry_over,
             layers.pressure_share,
             layers.shear_share, layers.g, viscosity, problem.heating, problem.conductance,
-            problem.heat_capacity, problem.order, problem.axial_order, problem.held,
-            problem.linked, problem.dx, problem.dy, walls.bush, walls.shaft, walls.bush_insulated,
+            problem.heat_capacity, problem.order, problem.axial_order, problem.fixed,
+            problem.interior, problem.dx, problem.dy, walls.bush, walls.shaft, walls.bush_insulated,
             inlet_temperature, extra, temperature, leaving,
         )  # fmt: skip
     return change, leaving
@@ -189,8 +202,8 @@ def march(
 
 @kernel
 def _sweep(
-    drive, drag, shared, inlet, carried, pressure_share, shear_share, g, viscosity, heating,
-    conductance, heat_capacity, order, axial_order, held, linked, dx, dy, bush, shaft,
+    poiseuille, couette, shared, inlet, carry_over, pressure_share, shear_share, g, viscosity,
+    heating, conductance, heat_capacity, order, axial_order, fixed, interior, dx, dy, bush, shaft,
     bush_insulated, inlet_temperature, extra, temperature, leaving,
 ):  # fmt: skip
     n, m, layers = temperature.shape
@@ -207,22 +220,22 @@ def _sweep(
         after = i + 1 if i < n - 1 else 0
         for s in range(m):
             j = axial_order[s]
-            if held[i, j]:
+            if fixed[i, j]:
                 continue
             south, north = max(j - 1, 0), min(j + 1, m - 1)
             # Weights of the extrapolation from centre to the face downstream, where this cell and
             # the one upstream are joined.
             along_w, south_w, north_w = 0.0, 0.0, 0.0
-            if linked[0, i, j] and not inlet[i, j]:
+            if interior[0, i, j] and not inlet[i, j]:
                 along_w = dx[i] / (dx[i] + dx[before])
-            if linked[2, i, j]:
+            if interior[2, i, j]:
                 south_w = dy[j] / (dy[j] + dy[south])
-            if linked[3, i, j]:
+            if interior[3, i, j]:
                 north_w = dy[j] / (dy[j] + dy[north])
-            g_w, g_e = drive[0, i, j], drive[1, i, j]
-            g_s, g_n = drive[2, i, j], drive[3, i, j]
-            c_w, c_e = drag[0, i, j], drag[1, i, j]
-            passed_w = (not shared[0, i, j]) and linked[0, i, j]
+            g_w, g_e = poiseuille[0, i, j], poiseuille[1, i, j]
+            g_s, g_n = poiseuille[2, i, j], poiseuille[3, i, j]
+            c_w, c_e = couette[0, i, j], couette[1, i, j]
+            passed_w = (not shared[0, i, j]) and interior[0, i, j]
             kz = conductance[i, j]
             rising = 0.0
             ratio = g[i, j]
@@ -259,14 +272,14 @@ def _sweep(
                 aside, aside_from = 0.0, 0.0
                 if q_w > 0.0:
                     center += q_w
-                    part = carried[i, j]
+                    part = carry_over[i, j]
                     if part > 0.0:
                         rhs += q_w * part * leaving[0, before, j, k]
                     if part < 1.0:
                         rhs += q_w * (1.0 - part) * inlet_temperature[0, i, j, k * layered]
                 if q_e <= 0.0:
                     center -= q_e
-                    if linked[1, i, j]:
+                    if interior[1, i, j]:
                         rhs -= q_e * temperature[after, j, k]
                     else:
                         rhs -= q_e * inlet_temperature[1, i, j, k * layered]
@@ -278,7 +291,7 @@ def _sweep(
                     rhs += q_e * ahead * ahead_from
                 if q_s > 0.0:
                     center += q_s
-                    if linked[2, i, j]:
+                    if interior[2, i, j]:
                         rhs += q_s * leaving[1, i, south, k]
                     else:
                         rhs += q_s * inlet_temperature[2, i, j, k * layered]
@@ -289,7 +302,7 @@ def _sweep(
                         rhs += q_n * aside * aside_from
                 if q_n < 0.0:
                     center -= q_n
-                    if linked[3, i, j]:
+                    if interior[3, i, j]:
                         rhs -= q_n * leaving[1, i, north, k]
                     else:
                         rhs -= q_n * inlet_temperature[3, i, j, k * layered]

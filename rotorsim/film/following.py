@@ -36,7 +36,7 @@ def following_stiffness(problem: FilmProblem, film: ThermalFilm) -> tuple[Array,
         Whether all four displaced films converged.
     """
     x, y = film.state.position
-    step = RELATIVE_STEP * film.state.thickness.minimum(~film.state.operator.held)
+    step = RELATIVE_STEP * film.state.thickness.minimum(~film.state.operator.fixed)
     shifts = ((step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step))
     films = [
         solve_thermal_film(

@@ -63,7 +63,7 @@ class Thickness:
 
 
 @dataclass(frozen=True)
-class Stations:
+class EvaluationPoints:
     """Where the film thickness is evaluated, and the bore there.
 
     Attributes
@@ -87,14 +87,14 @@ class Stations:
     tilt: tuple[float, float]
 
 
-def stations(bearing: Bearing, theta_faces: Array, y_faces: Array) -> Stations:
-    """Stations of a mesh."""
+def evaluation_points(bearing: Bearing, theta_faces: Array, y_faces: Array) -> EvaluationPoints:
+    """Return the evaluation points of a mesh."""
     inward = 1e-9 * np.diff(theta_faces)
     theta = np.stack(
         [0.5 * (theta_faces[1:] + theta_faces[:-1]), theta_faces[:-1], theta_faces[1:]]
     )
     inside = theta + np.stack([np.zeros_like(inward), inward, -inward])
-    return Stations(
+    return EvaluationPoints(
         cos=np.cos(theta),
         sin=np.sin(theta),
         bore=bearing.radial_clearance + bore_offset(bearing, inside),
@@ -104,7 +104,7 @@ def stations(bearing: Bearing, theta_faces: Array, y_faces: Array) -> Stations:
     )
 
 
-def film_thickness(at: Stations, position: tuple[float, float]) -> Thickness:
+def film_thickness(at: EvaluationPoints, position: tuple[float, float]) -> Thickness:
     """Film thickness c - e_x cos(theta) - e_y sin(theta) + lobes, e following the tilt along y."""
     h = np.empty((5, at.cos.shape[1], at.y.size))
     _thickness(
@@ -114,7 +114,7 @@ def film_thickness(at: Stations, position: tuple[float, float]) -> Thickness:
     return Thickness(center=h[0], west=h[1], east=h[2], south=h[3], north=h[4])
 
 
-def thinnest_film(at: Stations, position: tuple[float, float]) -> float:
+def thinnest_film(at: EvaluationPoints, position: tuple[float, float]) -> float:
     """Smallest film thickness on any face or centre [m]; not positive outside the bore."""
     ends = at.y_faces[[0, -1]][:, None, None]
     ex, ey = position[0] + at.tilt[0] * ends, position[1] + at.tilt[1] * ends

@@ -39,7 +39,7 @@ def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
         * state.operator.area
         / state.thickness.center
         * layers
-        * ~state.operator.held
+        * ~state.operator.fixed
     )
     m = problem.mesh.shape[1]
     axial_order = np.arange(m)
@@ -51,19 +51,19 @@ def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
         heating=dissipation(
             state.operator, state.thickness, state.layers, flow, problem.surface_speed
         ),
-        carried=_carried(problem, state, flow),
+        carry_over=_carry_over(problem, state, flow),
         conductance=conductance,
         heat_capacity=oil.density * oil.specific_heat,
         order=_march_order(problem, flow),
         axial_order=axial_order,
-        held=state.operator.held,
-        linked=state.operator.linked,
+        fixed=state.operator.fixed,
+        interior=state.operator.interior,
         dx=state.operator.dx,
         dy=state.operator.dy,
     )
 
 
-def _carried(problem: FilmProblem, state: FilmState, flow: FilmFlow) -> Array:
+def _carry_over(problem: FilmProblem, state: FilmState, flow: FilmFlow) -> Array:
     """Part of the oil entering each column from the one before.
 
     None where new oil enters. A film that re-forms behind the inception of its own stretch goes on
@@ -72,9 +72,9 @@ def _carried(problem: FilmProblem, state: FilmState, flow: FilmFlow) -> Array:
     """
     part = np.where(flow.inlet, 0.0, 1.0)
     if problem.thermal.inlet is InletModel.PERIODIC:
-        return np.where(np.roll(state.operator.held, 1, axis=0), part, 1.0)
+        return np.where(np.roll(state.operator.fixed, 1, axis=0), part, 1.0)
     if problem.mesh.slot.any() or problem.bearing.grooves:
-        part = np.where(flow.inlet & state.operator.linked[WEST], 1.0, part)
+        part = np.where(flow.inlet & state.operator.interior[WEST], 1.0, part)
     return part
 
 
@@ -134,13 +134,13 @@ def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
     shared = flow.shared[face][i, j][:, None]
     if face == WEST:
         # A ruptured column passes on its own profile.
-        passed = (~flow.shared[face] & energy.linked[face] & ~flow.inlet)[i, j][:, None]
+        passed = (~flow.shared[face] & energy.interior[face] & ~flow.inlet)[i, j][:, None]
         share_b = np.where(passed, far_b, share_b)
     share_a = np.where(shared, 0.5 * (share_a + far_a), share_a)
     share_b = np.where(shared, 0.5 * (share_b + far_b), share_b)
-    flux = flow.drive[face][i, j][:, None] * share_a
+    flux = flow.poiseuille[face][i, j][:, None] * share_a
     if face in (WEST, EAST):
-        flux = flux + flow.drag[face][i, j][:, None] * share_b
+        flux = flux + flow.couette[face][i, j][:, None] * share_b
     return flux
 
 
@@ -149,7 +149,7 @@ def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature:
 
     (4, n, m). ``fresh``: the supply's. ``mixing``: in every groove or slot the oil that arrives
     mixes with as much supplied oil as is missing. ``periodic``: as ``fresh`` where no film lies
-    before; a slot passes the film's own oil on (see `_carried`).
+    before; a slot passes the film's own oil on (see `_carry_over`).
     """
     thermal, mesh = problem.thermal, problem.mesh
     result = np.full((4, *mesh.shape), thermal.supply_temperature)
@@ -168,15 +168,15 @@ def _mixed(
     problem: FilmProblem, energy: EnergyProblem, temperature: Array, supplied: Array
 ) -> Array:
     """Mix what arrives in each groove or slot with as much fresh oil as is missing there."""
-    wells = _wells(problem, energy)
+    groove_source = _groove_source(problem, energy)
     count = len(problem.bearing.grooves) + 1
     taken, given, heat, supply = (np.zeros(count) for _ in range(4))
     for face in (WEST, EAST, SOUTH, NORTH):
-        open_ = wells[face] >= 0
+        open_ = groove_source[face] >= 0
         into = layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
-        number = wells[face][open_]
+        number = groove_source[face][open_]
         arriving, leaving = np.maximum(into, 0.0), np.maximum(-into, 0.0)
-        arriving *= energy.flow.brought[open_][:, None]
+        arriving *= energy.flow.fresh_fraction[open_][:, None]
         np.add.at(given, number, arriving.sum(axis=1))
         np.add.at(heat, number, (arriving * temperature[open_]).sum(axis=1))
         np.add.at(taken, number, leaving.sum(axis=1))
@@ -188,34 +188,34 @@ def _mixed(
         value = (heat + fresh * supply / taken) / (given + fresh)
     mixed = supplied.copy()
     for face in range(4):
-        here = (wells[face] >= 0) & (taken > 0.0)[np.maximum(wells[face], 0)]
-        mixed[face][here] = value[wells[face][here]]
+        here = (groove_source[face] >= 0) & (taken > 0.0)[np.maximum(groove_source[face], 0)]
+        mixed[face][here] = value[groove_source[face][here]]
     return mixed
 
 
 def _exits(energy: EnergyProblem) -> NDArray[np.bool_]:
     """Cells whose east face leads into a groove, a slot or a re-formed film's inlet."""
-    return (~energy.linked[EAST] | np.roll(energy.flow.inlet, -1, axis=0)) & ~energy.held
+    return (~energy.interior[EAST] | np.roll(energy.flow.inlet, -1, axis=0)) & ~energy.fixed
 
 
-def _wells(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
+def _groove_source(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
     """Number of the groove behind each face, (4, n, m); -1 for none.
 
     A slot, or the start of a film that begins anywhere, counts as one groove more.
     """
     supply = problem.mesh.supply
     grooves = len(problem.bearing.grooves)
-    wells = np.full((4, *supply.shape), -1, dtype=np.int64)
-    wells[WEST] = np.roll(supply, 1, axis=0)
-    wells[EAST] = np.roll(supply, -1, axis=0)
-    wells[SOUTH][:, 1:] = supply[:, :-1]
-    wells[NORTH][:, :-1] = supply[:, 1:]
-    inlet = energy.flow.inlet & (energy.carried < 1.0)
-    wells[WEST][inlet & (wells[WEST] < 0)] = grooves
+    groove_source = np.full((4, *supply.shape), -1, dtype=np.int64)
+    groove_source[WEST] = np.roll(supply, 1, axis=0)
+    groove_source[EAST] = np.roll(supply, -1, axis=0)
+    groove_source[SOUTH][:, 1:] = supply[:, :-1]
+    groove_source[NORTH][:, :-1] = supply[:, 1:]
+    inlet = energy.flow.inlet & (energy.carry_over < 1.0)
+    groove_source[WEST][inlet & (groove_source[WEST] < 0)] = grooves
     after = np.roll(inlet & (np.roll(supply, 1, axis=0) < 0), -1, axis=0)
-    wells[EAST][after & (wells[EAST] < 0)] = grooves
-    wells[:, energy.held] = -1
-    return wells
+    groove_source[EAST][after & (groove_source[EAST] < 0)] = grooves
+    groove_source[:, energy.fixed] = -1
+    return groove_source
 
 
 def with_groove_oil(problem: FilmProblem, temperature: Array, inlet_temperature: Array) -> Array:
@@ -271,10 +271,10 @@ def _enthalpy_out(
         elif face == EAST:
             open_, out = _exits(energy), leaving[0]
         else:
-            open_, out = ~energy.linked[face] & ~energy.held, leaving[1]
+            open_, out = ~energy.interior[face] & ~energy.fixed, leaving[1]
         entering = inlet_temperature[face][open_][:, None]
         if face == WEST:
-            part = energy.carried[open_][:, None]
+            part = energy.carry_over[open_][:, None]
             entering = part * before[open_] + (1.0 - part) * entering
         flux = outward * layer_fluxes(energy, face, open_)
         total += float(

@@ -1,7 +1,7 @@
 """Mass-conserving rupture (Jakobsson & Floberg 1957, Olsson 1965): pressure and liquid fraction.
 
 Every cell either is full (liquid fraction 1, unknown pressure >= 0) or ruptured (pressure 0,
-unknown liquid fraction <= 1); drag carries the liquid fraction of the cell upstream. The
+unknown liquid fraction <= 1); Couette flow carries the liquid fraction of the cell upstream. The
 complementarity problem is solved by an active set, each step one banded system in the unknown that
 the cell's state leaves open. The same matrix, at the solution, gives the perturbed pressures and
 liquid fractions.
@@ -69,11 +69,11 @@ def solve_jfo(
     Returns
     -------
     FilmOperator
-        With the drag scaled by the liquid fraction that it carries.
+        With the Couette flow scaled by the liquid fraction that it carries.
     PressureSolution
         Its `liquid` is the liquid fraction.
     """
-    film = ~operator.held
+    film = ~operator.fixed
     if frozen is not None:
         full = frozen
     elif start is None:
@@ -102,8 +102,8 @@ def solve_jfo(
         full = _worst_changes(full, update, unknown) if damped else update
     pressure = np.where(full, unknown, 0.0)
     liquid = np.where(full, 1.0, np.maximum(unknown, 0.0))
-    liquid[operator.held] = 1.0
-    pressure = np.where(operator.held, operator.outer_pressure[0], pressure)
+    liquid[operator.fixed] = 1.0
+    pressure = np.where(operator.fixed, operator.fixed_pressure[0], pressure)
     carried = _carried_fraction(operator, liquid)
     solution = PressureSolution(
         pressure=pressure,
@@ -115,12 +115,12 @@ def solve_jfo(
         liquid=liquid,
         violations=violations,
     )
-    return replace(operator, drag=operator.drag * carried), solution
+    return replace(operator, couette=operator.couette * carried), solution
 
 
 def _carried_fraction(operator: FilmOperator, liquid: Array) -> Array:
-    """Liquid fraction that the drag carries through the west and east faces, (2, n, m)."""
-    west = np.where(operator.linked[0], np.roll(liquid, 1, axis=0), 1.0)
+    """Liquid fraction that the Couette flow carries through the west and east faces, (2, n, m)."""
+    west = np.where(operator.interior[0], np.roll(liquid, 1, axis=0), 1.0)
     return np.stack([west, liquid])
 
 
@@ -136,18 +136,18 @@ def _worst_changes(full: Flags, update: Flags, unknown: Array) -> Flags:
 
 def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[JfoFactor, Array]:
     everything = np.ones_like(full)
-    order, folded = column_order(operator.linked, everything)
+    order, folded = column_order(operator.interior, everything)
     m = full.shape[1]
     width = min(2 * m if folded else m, order.size * m - 1)
     total = operator.conductance.sum(axis=0)
-    scale = float(np.mean(operator.drag)) / float(np.mean(total))
+    scale = float(np.mean(operator.couette)) / float(np.mean(total))
     band = np.zeros((3 * width + 1, order.size * m), order="F")
     position = np.empty(full.shape[0], dtype=np.int64)
     position[order] = np.arange(order.size)
     right = np.zeros(full.shape)
     _fill(
-        operator.conductance, operator.linked, operator.outer_pressure, operator.drag,
-        operator.held, full, rate * operator.area, order, position, width, scale, band, right,
+        operator.conductance, operator.interior, operator.fixed_pressure, operator.couette,
+        operator.fixed, full, rate * operator.area, order, position, width, scale, band, right,
     )  # fmt: skip
     band, pivots, info = _factorise(band, width, width, overwrite_ab=1)
     if info != 0:
@@ -157,7 +157,19 @@ def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[Jfo
 
 @kernel
 def _fill(
-    conductance, linked, outer, drag, held, full, rate, order, position, width, scale, band, right
+    conductance,
+    interior,
+    fixed_pressure,
+    couette,
+    fixed,
+    full,
+    rate,
+    order,
+    position,
+    width,
+    scale,
+    band,
+    right,
 ):
     """Rows: inflow into each cell with its sign turned, as right-hand sides are."""
     n, m = full.shape
@@ -168,7 +180,7 @@ def _fill(
         for j in range(m):
             column = c * m + j
             middle = 2 * width
-            if held[i, j]:
+            if fixed[i, j]:
                 band[middle, column] = 1.0
                 continue
             # this cell's own unknown, in its own row and in its neighbours'
@@ -178,7 +190,7 @@ def _fill(
                     total += conductance[face, i, j]
                 band[middle, column] = total * scale
                 for face in range(4):
-                    if not linked[face, i, j]:
+                    if not interior[face, i, j]:
                         continue
                     if face == 0:
                         row = position[before] * m + j
@@ -189,18 +201,20 @@ def _fill(
                     else:
                         row = column + 1
                     band[middle + row - column, column] -= conductance[face, i, j] * scale
-                right[i, j] -= drag[1, i, j] + rate[i, j]
-                if linked[1, i, j]:
-                    right[after, j] += drag[0, after, j]
+                right[i, j] -= couette[1, i, j] + rate[i, j]
+                if interior[1, i, j]:
+                    right[after, j] += couette[0, after, j]
             else:
-                band[middle, column] = drag[1, i, j] + rate[i, j]
-                if linked[1, i, j]:
+                band[middle, column] = couette[1, i, j] + rate[i, j]
+                if interior[1, i, j]:
                     row = position[after] * m + j
-                    band[middle + row - column, column] -= drag[0, after, j]
-            if not linked[0, i, j]:
-                right[i, j] += drag[0, i, j]
+                    band[middle + row - column, column] -= couette[0, after, j]
+            if not interior[0, i, j]:
+                right[i, j] += couette[0, i, j]
             for face in range(4):
-                if not linked[face, i, j]:
+                if not interior[face, i, j]:
                     right[i, j] += conductance[face, i, j] * (
-                        outer[face, i, j] if full[i, j] else max(outer[face, i, j], 0.0)
+                        fixed_pressure[face, i, j]
+                        if full[i, j]
+                        else max(fixed_pressure[face, i, j], 0.0)
                     )

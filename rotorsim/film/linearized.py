@@ -1,8 +1,8 @@
 """Stiffness and damping: the discrete film linearised at its solution (Dal Eq. 6-7, corrected).
 
-Every face's conductance goes with h^3 and its drag with h, so a displacement changes them by known
-amounts; the perturbed pressures solve the very matrix of the film, on its full cells, with its
-factor. The rupture boundary adds nothing to first order, since the pressure and its gradient
+Every face's conductance goes with h^3 and its Couette flow with h, so a displacement changes them
+by known amounts; the perturbed pressures solve the very matrix of the film, on its full cells, with
+its factor. The rupture boundary adds nothing to first order, since the pressure and its gradient
 vanish there. K and C are therefore the exact derivatives of the discrete force.
 """
 
@@ -36,7 +36,7 @@ def linearize(
     squeezed = operator.area if solution.liquid is None else solution.liquid * operator.area
     velocities = np.stack([operator.cos[0] * squeezed, operator.sin[0] * squeezed])
     right = np.concatenate([displacement_sources(operator, solution.raw), velocities])
-    right[:, operator.held] = 0.0
+    right[:, operator.fixed] = 0.0
     matrices = _reaction(operator, solution, multiplicity, right)
     return matrices[:, :2].copy(), matrices[:, 2:].copy()
 
@@ -67,30 +67,32 @@ def displacement_sources(operator: FilmOperator, pressure: Array) -> Array:
     """
     sources = np.zeros((2, *pressure.shape))
     _sources(
-        operator.conductance, operator.linked, operator.outer_pressure, operator.face_thickness,
-        operator.drag, operator.held, operator.cos[:, :, 0], operator.sin[:, :, 0], pressure,
+        operator.conductance, operator.interior, operator.fixed_pressure, operator.face_thickness,
+        operator.couette, operator.fixed, operator.cos[:, :, 0], operator.sin[:, :, 0], pressure,
         sources,
     )  # fmt: skip
     return sources
 
 
 @kernel
-def _sources(conductance, linked, outer, face_h, drag, held, cos, sin, pressure, sources):
+def _sources(
+    conductance, interior, fixed_pressure, face_h, couette, fixed, cos, sin, pressure, sources
+):
     n, m = pressure.shape
     for i in range(n):
         for j in range(m):
-            if held[i, j]:
+            if fixed[i, j]:
                 continue
             for face in range(4):
                 k, q = neighbour(face, i, j, n, m)
                 station = face + 1 if face < 2 else 0
-                beyond = pressure[k, q] if linked[face, i, j] else outer[face, i, j]
-                # conductance goes with h^3, drag with h
+                beyond = pressure[k, q] if interior[face, i, j] else fixed_pressure[face, i, j]
+                # conductance goes with h^3, Couette flow with h
                 rate = 3.0 * conductance[face, i, j] * (beyond - pressure[i, j])
                 if face == 0:
-                    rate += drag[0, i, j]
+                    rate += couette[0, i, j]
                 elif face == 1:
-                    rate -= drag[1, i, j]
+                    rate -= couette[1, i, j]
                 rate /= face_h[face, i, j]
                 sources[0, i, j] -= rate * cos[station, i]
                 sources[1, i, j] -= rate * sin[station, i]

@@ -23,12 +23,12 @@ def friction_force(problem: FilmProblem, state: FilmState, fraction: Array) -> f
         fraction = np.ones_like(fraction)
     pressure = state.solution.pressure
     behind = np.stack([np.roll(pressure, 1, axis=0), np.roll(pressure, -1, axis=0)])
-    behind = np.where(operator.linked[:2], behind, operator.outer_pressure[:2])
+    behind = np.where(operator.interior[:2], behind, operator.fixed_pressure[:2])
     rise = np.stack([pressure - behind[0], behind[1] - pressure])
-    share = np.where(operator.linked[:2], 0.5, 1.0)
-    film = ~operator.held
-    # drag = U h (1 - G) width and rise over the gap: int h p' (1 - G) dA = drag rise/U
-    driven = np.sum(share * operator.drag * rise * film) / problem.surface_speed
+    share = np.where(operator.interior[:2], 0.5, 1.0)
+    film = ~operator.fixed
+    # Couette flow = U h (1 - G) width, rise over the spacing: int h p' (1 - G) dA = flow rise/U
+    driven = np.sum(share * operator.couette * rise * film) / problem.surface_speed
     dragged = np.sum(
         film
         * fraction
@@ -43,7 +43,7 @@ def side_flow(problem: FilmProblem, state: FilmState) -> float:
     """Oil out of both ends [m3/s]."""
     conductance = state.operator.conductance
     pressure = state.solution.pressure
-    film = ~state.operator.held
+    film = ~state.operator.fixed
     out = np.sum((conductance[3] * pressure * film)[:, -1])
     if not problem.mesh.half:
         out += np.sum((conductance[2] * pressure * film)[:, 0])

@@ -1,4 +1,4 @@
-"""The film's cells: around the bearing, along its axis, across the gap.
+"""The film's cells: around the bearing, along its axis, across the film.
 
 Cells run around in the direction of rotation, i = 0..n-1, and along the axis, j = 0..m-1; a
 symmetric bearing is solved on one half, mid-plane to end. Pressure and temperature live at cell
@@ -179,7 +179,7 @@ def _theta_faces(
 
 
 def _mid_thickness(bearing: Bearing, theta: Array, position: tuple[float, float]) -> Array:
-    """Film thickness at mid-plane, held above 1e-4 of the clearance for the mesh's density."""
+    """Film thickness at mid-plane, kept above 1e-4 of the clearance for the mesh's density."""
     h = (
         bearing.radial_clearance
         - position[0] * np.cos(theta)

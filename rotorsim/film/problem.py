@@ -19,7 +19,7 @@ from ..model import (
 )
 from .banded import NoFilmError
 from .cavitation import solve_pressure
-from .geometry import Stations, film_thickness, stations, thinnest_film
+from .geometry import EvaluationPoints, evaluation_points, film_thickness, thinnest_film
 from .jfo import solve_jfo
 from .layers import LayerIntegrals
 from .linearized import film_force
@@ -44,7 +44,7 @@ class FilmProblem:
         [rad/s]
     mesh : FilmMesh
     topology : FaceTopology
-    stations : Stations
+    evaluation_points : EvaluationPoints
     """
 
     bearing: Bearing
@@ -54,7 +54,7 @@ class FilmProblem:
     speed: float
     mesh: FilmMesh
     topology: FaceTopology
-    stations: Stations
+    evaluation_points: EvaluationPoints
 
     @property
     def surface_speed(self) -> float:
@@ -86,7 +86,7 @@ def film_problem(
         speed=speed,
         mesh=mesh,
         topology=face_topology(mesh, supply),
-        stations=stations(bearing, mesh.theta_faces, mesh.y_faces),
+        evaluation_points=evaluation_points(bearing, mesh.theta_faces, mesh.y_faces),
     )
 
 
@@ -101,8 +101,8 @@ def film_state(
 ) -> FilmState:
     """Pressure and force with the journal at `position` [m], moving with `velocity` [m/s]."""
     mesh = problem.mesh
-    thickness = film_thickness(problem.stations, position)
-    if thinnest_film(problem.stations, position) <= 0.0:
+    thickness = film_thickness(problem.evaluation_points, position)
+    if thinnest_film(problem.evaluation_points, position) <= 0.0:
         raise NoFilmError("the journal touches the bore: lobes and tilt leave less room than asked")
     operator = film_operator(problem.topology, thickness, layers, problem.surface_speed)
     squeeze = None

@@ -13,7 +13,7 @@ from ..model import Bearing, Case, EccentricityTarget, LoadTarget
 from ..status import SolveStatus
 from .banded import NoFilmError
 from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
-from .geometry import stations, thinnest_film
+from .geometry import evaluation_points, thinnest_film
 from .layers import isoviscous_layers
 from .problem import FilmProblem, film_problem, film_state
 from .state import FilmState
@@ -221,7 +221,7 @@ def _inside(problem: FilmProblem, search: Search, position: Position) -> Positio
     """A first position with film all round, nearer to the centre if need be."""
     for share in (1.0, 0.7, 0.4, 0.0):
         nearer = (share * position[0], share * position[1])
-        if thinnest_film(problem.stations, nearer) > 0.0:
+        if thinnest_film(problem.evaluation_points, nearer) > 0.0:
             return nearer
         if isinstance(search, AttitudeSearch):
             raise NoFilmError(
@@ -239,7 +239,7 @@ def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | Atti
 
 
 def _thinnest(problem: FilmProblem) -> Callable[[Position], float]:
-    return lambda position: thinnest_film(problem.stations, position)
+    return lambda position: thinnest_film(problem.evaluation_points, position)
 
 
 def _first_position(case: Case) -> Position:
@@ -260,7 +260,9 @@ def _frame_angle(bearing: Bearing, position: Position) -> float:
 
 def _graded_position(bearing: Bearing, position: Position) -> Position:
     """Position for which the mesh is graded, on a grid as fine as the film is thin."""
-    around = stations(bearing, np.linspace(0.0, 2.0 * math.pi, 181), np.array([-1e-9, 1e-9]))
+    around = evaluation_points(
+        bearing, np.linspace(0.0, 2.0 * math.pi, 181), np.array([-1e-9, 1e-9])
+    )
     thin = thinnest_film(around, position)
     relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
     grid = 2.0 ** math.floor(math.log2(relative / 2.0)) * bearing.radial_clearance

@@ -216,9 +216,9 @@ def test_oil_is_conserved(eps, bore, cavitation):
     state = solution.state
     flow = film_flow(state, solution.problem.surface_speed)
     net = flow.flux[0] - flow.flux[1] + flow.flux[2] - flow.flux[3]
-    net = np.where(state.operator.held, 0.0, net)
-    film = ~state.operator.held
-    inflow = np.where(~state.operator.linked[0] & film, flow.flux[0], 0.0).clip(0.0).sum()
+    net = np.where(state.operator.fixed, 0.0, net)
+    film = ~state.operator.fixed
+    inflow = np.where(~state.operator.interior[0] & film, flow.flux[0], 0.0).clip(0.0).sum()
     inflow = max(inflow, np.abs(flow.flux).max())
     assert np.abs(net).sum() < MASS_BALANCE * inflow
     assert np.all((flow.liquid_fraction >= 0.0) & (flow.liquid_fraction <= 1.0))
@@ -302,5 +302,5 @@ def test_damping_of_a_heated_film_need_not_be_symmetric():
     """The symmetry above is no accident of the code: with G varying along the film it goes."""
     point, _ = solve_case(thermal_case(0.5, bearing=Bearing(RADIUS, 0.08, CLEARANCE)), 1500.0)
     assert point.converged
-    gap = abs(point.damping[0, 1] - point.damping[1, 0])
-    assert gap < 0.2 * np.abs(point.damping).max()
+    spacing = abs(point.damping[0, 1] - point.damping[1, 0])
+    assert spacing < 0.2 * np.abs(point.damping).max()

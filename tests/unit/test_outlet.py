@@ -42,7 +42,7 @@ def test_outlet_temperature_is_that_of_the_oil_at_the_ends():
     solution, point = solved(TEXT)
     assert solution.thermal is not None
     energy = solution.thermal.energy
-    ends = ~energy.linked[NORTH] & ~energy.held
+    ends = ~energy.interior[NORTH] & ~energy.fixed
     flow = layer_fluxes(energy, NORTH, ends)
     leaving = solution.thermal.leaving_temperature[1][ends]
     assert point.outlet_temperature == pytest.approx(np.sum(flow * leaving) / np.sum(flow), abs=0.5)

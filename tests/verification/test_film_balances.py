@@ -61,7 +61,7 @@ def test_every_cell_passes_on_what_it_receives(solved):
     state, problem = solution.state, solution.problem
     flow = film_flow(state, problem.surface_speed)
     scale = np.abs(flow.flux).max()
-    net = np.where(state.operator.held, 0.0, _net(flow))
+    net = np.where(state.operator.fixed, 0.0, _net(flow))
     assert np.abs(net[state.solution.full]).max() < MASS_BALANCE * scale
     assert np.abs(net).max() < MASS_BALANCE * scale
     assert flow.liquid_fraction.min() >= 0.0
@@ -72,21 +72,21 @@ def test_neighbours_agree_on_the_flow_between_them(solved):
     """What leaves a cell eastwards enters the next, but where fresh oil makes up the difference."""
     _, solution = solved
     flow = film_flow(solution.state, solution.problem.surface_speed)
-    linked, scale = solution.state.operator.linked, np.abs(flow.flux).max()
-    same = linked[0] & ~flow.inlet
+    interior, scale = solution.state.operator.interior, np.abs(flow.flux).max()
+    same = interior[0] & ~flow.inlet
     step = np.abs(flow.flux[0] - np.roll(flow.flux[1], 1, axis=0))
     assert step[same].max() < ROUNDING * scale
     across = np.abs(flow.flux[2][:, 1:] - flow.flux[3][:, :-1])
     full = solution.state.solution.full
-    both = linked[2][:, 1:] & (full[:, 1:] | full[:, :-1])
+    both = interior[2][:, 1:] & (full[:, 1:] | full[:, :-1])
     assert across[both].max() < ROUNDING * scale
 
 
 def whole_film_fluxes(energy, face):
     """Flux of every layer of every cell, (n, m, k); nothing in grooves."""
-    everywhere = np.ones_like(energy.held)
+    everywhere = np.ones_like(energy.fixed)
     fluxes = layer_fluxes(energy, face, everywhere).reshape(*everywhere.shape, -1)
-    return np.where(energy.held[:, :, None], 0.0, fluxes)
+    return np.where(energy.fixed[:, :, None], 0.0, fluxes)
 
 
 def test_nothing_crosses_the_walls(solved):
@@ -96,7 +96,7 @@ def test_nothing_crosses_the_walls(solved):
     west, east, south, north = (whole_film_fluxes(energy, face) for face in range(4))
     rising = np.cumsum(west - east + south - north, axis=2)
     scale = np.abs(west.sum(axis=2)).max()
-    assert np.abs(rising[:, :, -1][~energy.held]).max() < MASS_BALANCE * scale
+    assert np.abs(rising[:, :, -1][~energy.fixed]).max() < MASS_BALANCE * scale
     # and inside the film it does flow across
     assert np.abs(rising[:, :, 5]).max() > 1e-4 * scale
 
@@ -107,7 +107,7 @@ def test_layers_add_up_to_the_flow(solved):
     scale = np.abs(energy.flow.flux).max()
     for face in range(4):
         total = whole_film_fluxes(energy, face).sum(axis=2)
-        wrong = np.where(energy.held, 0.0, total - energy.flow.flux[face])
+        wrong = np.where(energy.fixed, 0.0, total - energy.flow.flux[face])
         assert np.abs(wrong).max() < ROUNDING * scale
 
 
@@ -127,7 +127,7 @@ def test_friction_power_is_the_dissipation(solved):
     flux = film_flow(state, solution.problem.surface_speed).flux
     operator, into = state.operator, (1.0, -1.0, 1.0, -1.0)
     pumped = solution.problem.mesh.multiplicity * sum(
-        sign * float(np.sum(np.where(operator.held, 0.0, operator.outer_pressure[f] * flux[f])))
+        sign * float(np.sum(np.where(operator.fixed, 0.0, operator.fixed_pressure[f] * flux[f])))
         for f, sign in enumerate(into)
     )
     # Half-Sommerfeld drops pressure from a film that it lets flow on: Green's identity breaks.

@@ -65,7 +65,7 @@ class LongFilm:
         e2 = self.eccentricity**2
         return CLEARANCE * 2.0 * (1.0 - e2) / (2.0 + e2)
 
-    def drive(self, t, y):
+    def poiseuille(self, t, y):
         """h^3 dp/dx and h^3 dp/dy."""
         around = 6.0 * VISCOSITY * SURFACE * (self.thickness(t) - self._level)
         return around + 0.0 * y, 0.0 * t * y
@@ -87,12 +87,12 @@ class DrainingFilm:
     def thickness(self, t):
         return CLEARANCE + 0.0 * t
 
-    def drive(self, t, y):
+    def poiseuille(self, t, y):
         scale = CLEARANCE**3 * self.strength / RADIUS**2
         return scale * RADIUS * t + 0.0 * y, -scale * y + 0.0 * t
 
     def velocity(self, t, y, z):
-        around, along = self.drive(t, y)
+        around, along = self.poiseuille(t, y)
         shape = z * (z - 1.0) / (2.0 * VISCOSITY)
         return SURFACE * CLEARANCE * z + around * shape, along * shape, 0.0 * t * y * z
 
@@ -108,27 +108,33 @@ def build(film, level: int):
     z = (np.arange(k) + 0.5) / k
     dx, dy = RADIUS * np.diff(faces), np.diff(y_faces)
     area = dx[:, None] * dy
-    linked = np.ones((4, n, m), dtype=bool)
-    linked[0, 0], linked[1, -1], linked[2, :, 0], linked[3, :, -1] = (False,) * 4
-    drive = np.empty((4, n, m))
-    around = film.drive(faces[:, None], y[None])[0] * dy
-    along = film.drive(t[:, None], y_faces[None])[1] * dx[:, None]
-    drive[0], drive[1], drive[2], drive[3] = around[:-1], around[1:], along[:, :-1], along[:, 1:]
+    interior = np.ones((4, n, m), dtype=bool)
+    interior[0, 0], interior[1, -1], interior[2, :, 0], interior[3, :, -1] = (False,) * 4
+    poiseuille = np.empty((4, n, m))
+    around = film.poiseuille(faces[:, None], y[None])[0] * dy
+    along = film.poiseuille(t[:, None], y_faces[None])[1] * dx[:, None]
+    poiseuille[0], poiseuille[1], poiseuille[2], poiseuille[3] = (
+        around[:-1],
+        around[1:],
+        along[:, :-1],
+        along[:, 1:],
+    )
     h_faces = film.thickness(faces)[:, None]
-    drag = SURFACE * np.stack([h_faces[:-1] * dy, h_faces[1:] * dy])
+    couette = SURFACE * np.stack([h_faces[:-1] * dy, h_faces[1:] * dy])
     inlet = np.zeros((n, m), dtype=bool)
     inlet[0] = True
     viscosity = np.full((n, m, k), VISCOSITY)
     flow = FilmFlow(
-        step=np.zeros((4, n, m)), drive=drive, drag=drag, shared=linked, inlet=inlet,
-        flux=np.zeros((4, n, m)), liquid_fraction=np.ones((n, m)), brought=np.ones((n, m)),
+        step=np.zeros((4, n, m)), poiseuille=poiseuille, couette=couette, shared=interior,
+        inlet=inlet,
+        flux=np.zeros((4, n, m)), liquid_fraction=np.ones((n, m)), fresh_fraction=np.ones((n, m)),
     )  # fmt: skip
     problem = EnergyProblem(
         flow=flow, layers=layer_integrals(viscosity), heating=np.zeros((3, n, m)),
-        carried=np.where(inlet, 0.0, 1.0),
+        carry_over=np.where(inlet, 0.0, 1.0),
         conductance=CONDUCTIVITY * area / film.thickness(t)[:, None] * k, heat_capacity=CAPACITY,
-        order=np.arange(n), axial_order=np.arange(m), held=np.zeros((n, m), dtype=bool),
-        linked=linked, dx=dx, dy=dy,
+        order=np.arange(n), axial_order=np.arange(m), fixed=np.zeros((n, m), dtype=bool),
+        interior=interior, dx=dx, dy=dy,
     )  # fmt: skip
     t, y = t[:, None, None], y[None, :, None]
     t_x, t_y, t_z, t_zz = _gradients(t, y, z)

@@ -14,7 +14,7 @@ from film_cases import CLEARANCE, RADIUS, SPEED, VISCOSITY
 from tolerances import ORDER
 
 from rotorsim.film.cavitation import solve_pressure
-from rotorsim.film.geometry import film_thickness, stations
+from rotorsim.film.geometry import evaluation_points, film_thickness
 from rotorsim.film.layers import layer_integrals
 from rotorsim.film.mesh import build_mesh
 from rotorsim.film.operator import face_topology, film_operator
@@ -111,7 +111,7 @@ def solve(exact: Manufactured, level: int) -> float:
     z = (np.arange(size.cross_film) + 0.5) / size.cross_film
     t, y = mesh.theta[:, None], mesh.y[None, :]
     viscosity = exact.viscosity(t[:, :, None], y[:, :, None], z)
-    film = film_thickness(stations(bearing, mesh.theta_faces, mesh.y_faces), POSITION)
+    film = film_thickness(evaluation_points(bearing, mesh.theta_faces, mesh.y_faces), POSITION)
     topology = face_topology(mesh, np.zeros(1))
     operator = film_operator(topology, film, layer_integrals(viscosity), SURFACE)
     # continuity in a cell: inflow - squeeze*area = 0
