@@ -27,6 +27,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rotorsim.bearing.operating_point import OperatingPoint
+from rotorsim.bearing.solve import solve_case
 from rotorsim.model import (
     Bearing,
     BushModel,
@@ -43,8 +45,6 @@ from rotorsim.model import (
     ThermalModel,
     ThermalSettings,
 )
-from rotorsim.operating_point import OperatingPoint
-from rotorsim.solver import solve_case
 
 SPEED = 5000.0 * math.pi / 30.0
 SWEEP = tuple(float(s) for s in np.linspace(2500.0, 15000.0, 10) * math.pi / 30.0)

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.model import (
     Bearing,
     BushModel,
@@ -32,7 +33,6 @@ from rotorsim.model import (
     ShaftModel,
     ThermalSettings,
 )
-from rotorsim.solver import solve_case
 
 FACTORS = (0.25, 0.5, 1.0, 2.0, 3.0)
 OIL = Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13)

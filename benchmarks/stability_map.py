@@ -13,8 +13,8 @@ from collections.abc import Callable
 import control
 import numpy as np
 
-from rotorsim.stability.matrices import state_matrix
-from rotorsim.stability.rates import decay_rate_map
+from rotorsim.machine.matrices import state_matrix
+from rotorsim.machine.rates import decay_rate_map
 
 POINTS, MASSES, SAMPLE, REPEATS = 1000, 1000, 2000, 5
 

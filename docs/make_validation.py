@@ -22,8 +22,8 @@ mpl.use("agg")
 import film_cases as cases  # noqa: E402
 import matplotlib.pyplot as plt  # noqa: E402
 
-from rotorsim.operating_point import OperatingPoint  # noqa: E402
-from rotorsim.solver import solve_case  # noqa: E402
+from rotorsim.bearing.operating_point import OperatingPoint  # noqa: E402
+from rotorsim.bearing.solve import solve_case  # noqa: E402
 
 IMAGES = ROOT / "docs" / "images" / "validation"
 MESH = (320, 96)

@@ -13,6 +13,8 @@ import film_cases as cases
 import numpy as np
 from make_validation import percent, table, write
 
+from rotorsim.bearing.solve import solve_case
+from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.film.layers import isoviscous_layers
 from rotorsim.film.problem import film_problem, film_state
 from rotorsim.model import Case, LoadTarget, MeshSize
@@ -36,8 +38,6 @@ from rotorsim.orbit import (
     steady_part,
 )
 from rotorsim.orbit.short_bearing import short_bearing_impedance
-from rotorsim.solver import solve_case
-from rotorsim.stability import rigid_threshold
 
 SPEED, LOAD, MASS = 12000.0 * math.pi / 30.0, 1500.0, 135.0
 RADIUS, CLEARANCE, VISCOSITY = 0.025, 50e-6, 0.02

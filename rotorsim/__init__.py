@@ -15,18 +15,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .bearing.operating_point import FilmFields, HeatBalance, OperatingPoint
+    from .bearing.solve import solve, solve_case
+    from .bearing.table import CoefficientTable
     from .errors import InputError, OutOfRangeError, RotorsimError, ScenarioError, TableError
-    from .operating_point import FilmFields, HeatBalance, OperatingPoint
+    from .files.scenario import Scenario, load_scenario
+    from .machine.map import stability_map
+    from .machine.statespace import state_space
     from .orbit import Orbit
-    from .pipeline import record, simulate_orbit
-    from .recording import open_viewer
-    from .scenario import Scenario, load_scenario
     from .shipped import shipped_scenarios, shipped_tables
-    from .solver import solve, solve_case
-    from .stability import stability_map, state_space
+    from .show.recording import open_viewer
+    from .show.recordings import record
     from .status import SolveStatus, Stability
-    from .sweep import tabulate
-    from .table import CoefficientTable
+    from .study.orbits import simulate_orbit
+    from .study.sweep import tabulate
 
 __version__ = "0.1.0"
 
@@ -59,18 +61,20 @@ __all__ = [
 ]
 
 _HOMES = {
+    "bearing.operating_point": ("FilmFields", "HeatBalance", "OperatingPoint"),
+    "bearing.solve": ("solve", "solve_case"),
+    "bearing.table": ("CoefficientTable",),
     "errors": ("InputError", "OutOfRangeError", "RotorsimError", "ScenarioError", "TableError"),
-    "operating_point": ("FilmFields", "HeatBalance", "OperatingPoint"),
+    "files.scenario": ("Scenario", "load_scenario"),
+    "machine.map": ("stability_map",),
+    "machine.statespace": ("state_space",),
     "orbit": ("Orbit",),
-    "pipeline": ("record", "simulate_orbit"),
-    "recording": ("open_viewer",),
-    "scenario": ("Scenario", "load_scenario"),
     "shipped": ("shipped_scenarios", "shipped_tables"),
-    "solver": ("solve", "solve_case"),
-    "stability": ("stability_map", "state_space"),
+    "show.recording": ("open_viewer",),
+    "show.recordings": ("record",),
     "status": ("SolveStatus", "Stability"),
-    "sweep": ("tabulate",),
-    "table": ("CoefficientTable",),
+    "study.orbits": ("simulate_orbit",),
+    "study.sweep": ("tabulate",),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -1,5 +1,5 @@
 """``python -m rotorsim``: the command line where no script is on the path."""
 
-from rotorsim.cli import main
+from .cli import main
 
 main()

@@ -11,4 +11,4 @@ def as_html(result: Any) -> str:
 
     The report stands above everything that it shows; it is therefore loaded by name, here alone.
     """
-    return import_module("rotorsim.report.notebook").as_html(result)
+    return import_module("rotorsim.show.report.notebook").as_html(result)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.model import (
     Arc,
     Bearing,
@@ -25,7 +26,6 @@ from rotorsim.model import (
     ThermalModel,
     ThermalSettings,
 )
-from rotorsim.operating_point import OperatingPoint
 
 DATA = Path(__file__).parent / "data"
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 100e-6, 0.02, 100.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..model import EccentricityTarget, ThermalModel
-from ..pipeline.wording import RPM, ZERO_CELSIUS, number
+from ..study.wording import RPM, ZERO_CELSIUS, number
 from .tables import grid
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from rich.console import RenderableType
 
-    from ..scenario import Scenario
+    from ..files.scenario import Scenario
 
 
 def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[RenderableType]:

@@ -14,9 +14,9 @@ from .output import DONE, INCOMPLETE, Output
 from .stability_options import FolderOption, MassOption
 
 if TYPE_CHECKING:
+    from ..files.scenario import Scenario
     from ..model import Case
-    from ..pipeline.control_study import ControlStudy
-    from ..scenario import Scenario
+    from ..study.control import ControlStudy
 
 
 class DesignChoice(StrEnum):
@@ -65,8 +65,8 @@ def control(
 
     A table of coefficients has no film to try it on: design on it from Python (design_lqr).
     """
-    from ..pipeline.control_study import ControlWishes, Design, study_control
-    from ..scenario import load_scenario
+    from ..files.scenario import load_scenario
+    from ..study.control import ControlWishes, Design, study_control
 
     loaded = load_scenario(scenario)
     force = _quantity(max_force, "force", "--max-force", "2 kN")
@@ -80,7 +80,7 @@ def control(
     study = study_control(_case(loaded, clearance, model), at, _mass(loaded, mass), wishes)
     document = study_document(study)
     if folder is not None:
-        from ..pipeline.stability_figures import control_figures, save_figures
+        from ..show.stability_figures import control_figures, save_figures
 
         document["files"] = save_figures(control_figures(study, loaded.title), folder)
     output.document(document)

@@ -25,7 +25,7 @@ class Profile(StrEnum):
 
 
 class ExportFormat(StrEnum):
-    """Formats that `export` can write; `rotorsim.interchange.FORMATS` says how."""
+    """Formats that `export` can write; `rotorsim.files.FORMATS` says how."""
 
     ROSS = "ross"
     CSV = "csv"
@@ -114,7 +114,7 @@ def new(
     Example: rotorsim new pump --profile elliptical --load "10 kN" --iso-vg 46
     """
     from ..atomic import write_text
-    from ..scenario import Scenario
+    from ..files.scenario import Scenario
 
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     if Path(name).suffix.lower() in _OTHER_SUFFIXES:
@@ -209,7 +209,7 @@ def export(
 
     Example: rotorsim export coefficients/dal.nc --to ross,csv
     """
-    from ..interchange import FORMATS, read_table, write_table
+    from ..files.formats import FORMATS, read_table, write_table
 
     kinds = export_formats(to)
     read_at, written_at = load_directions(load_direction, table, kinds)
@@ -242,7 +242,7 @@ def view(
 
     Example: rotorsim view logs/dal.rrd
     """
-    from ..recording import open_viewer
+    from ..show.recording import open_viewer
 
     if recording.is_file():
         with recording.open("rb") as stream:

@@ -31,9 +31,9 @@ from .output import DONE, INCOMPLETE, Output
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ..operating_point import OperatingPoint
-    from ..scenario import Scenario
-    from ..table import CoefficientTable
+    from ..bearing.operating_point import OperatingPoint
+    from ..bearing.table import CoefficientTable
+    from ..files.scenario import Scenario
 
 MANY = 4
 """Points from which on a list is shown instead of each in full."""
@@ -44,9 +44,9 @@ def check(output: Output, scenario: ScenarioArgument) -> int:
 
     Example: rotorsim check scenarios/dal.toml
     """
-    from ..checks import derived_numbers, regime_warnings
-    from ..drawing import drawing_numbers, drawing_warnings, heating_warnings
-    from ..scenario import load_scenario
+    from ..bearing.checks import derived_numbers, regime_warnings
+    from ..bearing.drawing import drawing_numbers, drawing_warnings, heating_warnings
+    from ..files.scenario import load_scenario
 
     loaded = load_scenario(scenario)
     top = float(loaded.speeds[-1])
@@ -102,9 +102,9 @@ def solve(
 
     Example: rotorsim solve scenarios/dal.toml --speed "15000 rpm" --clearance "100 um" --json
     """
-    from ..records import point_to_dict
-    from ..scenario import load_scenario
-    from ..sweep import sweep_points
+    from ..bearing.operating_point import point_to_dict
+    from ..files.scenario import load_scenario
+    from ..study.sweep import sweep_points
     from .progress import film_progress
 
     loaded = load_scenario(scenario)
@@ -143,8 +143,8 @@ def table(
 
     Example: rotorsim table scenarios/dal.toml -o coefficients/dal.nc
     """
-    from ..records import point_to_dict
-    from ..scenario import load_scenario
+    from ..bearing.operating_point import point_to_dict
+    from ..files.scenario import load_scenario
 
     loaded = load_scenario(scenario)
     path = file or table_path(scenario, Path())
@@ -166,8 +166,8 @@ def computed_table(
     scheduler: str | None = None,
 ) -> tuple[list[OperatingPoint], CoefficientTable]:
     """Points and table of `scenario`, saved to `path`; a journal next to it until then."""
-    from ..journal import Journal
-    from ..sweep import as_table, sweep_points
+    from ..study.journal import Journal
+    from ..study.sweep import as_table, sweep_points
     from .progress import film_progress
 
     check_workers(workers)
@@ -199,7 +199,7 @@ def computed_table(
 
 def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     """Say what did not converge and what left the model's range; the exit code."""
-    from ..pipeline.wording import describe, grouped_warnings
+    from ..study.wording import describe, grouped_warnings
 
     bad = [point for point in points if not point.converged]
     for point in bad[:5]:

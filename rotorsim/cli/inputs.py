@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 
 if TYPE_CHECKING:
+    from ..files.scenario import Scenario
     from ..model import Case
-    from ..scenario import Scenario
 
 
 def wanted_cases(scenario: Scenario, clearance: str | None, model: str | None) -> list[Case]:

@@ -17,9 +17,9 @@ from .output import DONE, INCOMPLETE, Output, as_typed
 from .progress import late_progress, progress_bar
 
 if TYPE_CHECKING:
+    from ..bearing.table import CoefficientTable
+    from ..files.scenario import Scenario
     from ..orbit import Orbit
-    from ..scenario import Scenario
-    from ..table import CoefficientTable
 
 
 def orbit(
@@ -63,11 +63,11 @@ def orbit(
 
     Example: rotorsim orbit scenarios/orbit_limit_cycle.toml --gif
     """
-    from ..pipeline import orbit_settings
-    from ..pipeline.orbit_pictures import write_animation, write_orbit_figures
-    from ..pipeline.summary import describe_orbit
-    from ..pipeline.writing import record_scenario
-    from ..scenario import load_scenario
+    from ..files.scenario import load_scenario
+    from ..show.orbit_pictures import write_animation, write_orbit_figures
+    from ..show.writing import record_scenario
+    from ..study.orbits import orbit_settings
+    from ..study.summary import describe_orbit
 
     loaded = load_scenario(scenario)
     settings, _ = orbit_settings(loaded)  # what is missing should be said before the work
@@ -104,7 +104,7 @@ def orbit(
 
 
 def _check_mp4(wanted: bool) -> None:
-    from ..plots.animation import can_write_mp4
+    from ..show.figures.animation import can_write_mp4
 
     if wanted and not can_write_mp4():
         raise InputError(
@@ -116,9 +116,9 @@ def _coefficients(
     output: Output, loaded: Scenario, scenario: Path, table: Path | None, workers: int | None
 ) -> CoefficientTable | None:
     """Table for linear coefficients; a nonlinear film needs none."""
-    from ..interchange import read_table
-    from ..pipeline.provenance import differences
-    from ..scenario import OrbitForce
+    from ..files.formats import read_table
+    from ..files.scenario import OrbitForce
+    from ..study.provenance import differences
 
     if loaded.orbit is not None and loaded.orbit.force is not OrbitForce.LINEAR:
         if table is not None:
@@ -152,15 +152,14 @@ def _simulate(
     models: Sequence[str],
     live: bool,
 ) -> list[Orbit]:
-    from ..pipeline import simulate_orbit
-    from ..pipeline.orbits import orbit_settings, prepare_film, scenario_schedule
+    from ..study.orbits import orbit_settings, prepare_film, scenario_schedule, simulate_orbit
 
     total = scenario_schedule(orbit_settings(loaded)[0]).revolutions
     orbits = []
     with ExitStack() as stack:
         show: Callable[[Orbit], None] | None = None
         if live:
-            from ..pipeline.live import live_view
+            from ..show.recordings import live_view
 
             show = stack.enter_context(live_view(loaded.title))
         for name in models:

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from ..bearing.operating_point import strict_json
 from ..errors import InputError, RotorsimError
-from ..records import strict_json
 
 if TYPE_CHECKING:
     from pathlib import Path

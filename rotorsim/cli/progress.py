@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
-from ..pipeline.wording import describe
+from ..study.wording import describe
 
 if TYPE_CHECKING:
-    from ..operating_point import OperatingPoint
-    from ..sweep import Progress
+    from ..bearing.operating_point import OperatingPoint
+    from ..study.sweep import Progress
     from .output import Output
 
 _QUIET_SECONDS = 10.0

@@ -31,9 +31,9 @@ def report(
 
     Example: rotorsim report scenarios/quick.toml -o quick.html
     """
-    from ..pipeline.main_job import compute
-    from ..report import write_report
-    from ..scenario import load_scenario
+    from ..files.scenario import load_scenario
+    from ..show.main_job import compute
+    from ..show.report import write_report
 
     loaded = load_scenario(scenario)
     page = file or Path("reports") / f"{scenario.stem}.html"

@@ -21,9 +21,9 @@ def run(
 
     Example: rotorsim run scenarios/dal.toml
     """
-    from ..pipeline.main_job import compute, summary
-    from ..pipeline.writing import write_results
-    from ..scenario import load_scenario
+    from ..files.scenario import load_scenario
+    from ..show.main_job import compute, summary
+    from ..show.writing import write_results
 
     loaded = load_scenario(scenario)
     name = scenario.stem

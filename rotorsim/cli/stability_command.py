@@ -47,10 +47,10 @@ from .stability_options import (
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from ..bearing.table import CoefficientTable
+    from ..files.scenario import Scenario
     from ..model import MeshSize
-    from ..pipeline.planes import Plane
-    from ..scenario import Scenario
-    from ..table import CoefficientTable
+    from ..study.planes import Plane
 
 
 def stability(
@@ -129,13 +129,13 @@ class _Work:
     @property
     def mesh_size(self) -> MeshSize | None:
         """In place of the scenario's."""
-        from ..pipeline.film_axes import COARSE
+        from ..study.axes import COARSE
 
         return COARSE if self.mesh is Mesh.COARSE else None
 
     def finish(self, document: dict[str, Any], figures: Any, parts: Callable[[], list]) -> None:
         """Write the figures, print the document or the tables."""
-        from ..pipeline.stability_figures import save_figures
+        from ..show.stability_figures import save_figures
 
         if self.folder is not None:
             document.setdefault("files", []).extend(save_figures(figures, self.folder))
@@ -164,14 +164,14 @@ def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[flo
 def _show_map(
     work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
 ) -> int:
-    from ..pipeline.stability_figures import plane_figure
+    from ..show.stability_figures import plane_figure
     from .stability_results import plane_document, plane_table
 
     plane, title = _plane(work, source, axes, held)
     document = {"map": plane_document(plane), "points": plane.solved_points}
     name = f"map_{plane.x}_{plane.y}"
     if work.folder is not None:
-        from ..table.netcdf import write
+        from ..bearing.netcdf import write
 
         document["files"] = [write(plane.dataset, work.folder / f"{name}.nc")]
     figures = ((name, plane_figure(plane, title)) for _ in range(1))
@@ -183,9 +183,9 @@ def _plane(
     work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
 ) -> tuple[Plane, str]:
     """The map and its title."""
-    from ..interchange import is_table, read_table
-    from ..pipeline.planes import plane_of_scenario, plane_of_table
-    from ..scenario import load_scenario
+    from ..files.formats import is_table, read_table
+    from ..files.scenario import load_scenario
+    from ..study.planes import plane_of_scenario, plane_of_table
     from .progress import film_progress
 
     x, y = axes
@@ -225,8 +225,8 @@ def _show_tolerances(
     texts: list[str] | None,
     samples: int | None,
 ) -> int:
-    from ..pipeline.stability_figures import tolerance_figure
-    from ..pipeline.tolerances import study_tolerances
+    from ..show.stability_figures import tolerance_figure
+    from ..study.tolerances import study_tolerances
     from .stability_results import study_document, study_tables
 
     scenario, _ = _source(work.output, source)
@@ -280,10 +280,9 @@ def _sample_progress(output: Output) -> Iterator[Callable[[int, int], None] | No
 
 
 def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> int:
-    from ..pipeline.campbell import campbell_curves
-    from ..pipeline.stability import doubts, stability_curves
-    from ..pipeline.stability_figures import campbell_figures
-    from ..stability import RigidShaft
+    from ..machine.over_speed import RigidShaft
+    from ..show.stability_figures import campbell_figures
+    from ..study.stability import campbell_curves, doubts, stability_curves
     from .stability_results import branches_table, curve_row, modes_table, threshold_table
     from .stability_tables import curve_table, summary_table
 
@@ -328,8 +327,8 @@ def _report_failed(output: Output, bad: int, total: int) -> int:
 
 def _source(output: Output, source: Path) -> tuple[Scenario | None, CoefficientTable | None]:
     """Scenario at `source`, or of the table there where it says; the table, if it is one."""
-    from ..interchange import is_table, read_table
-    from ..scenario import load_scenario
+    from ..files.formats import is_table, read_table
+    from ..files.scenario import load_scenario
 
     if is_table(source):
         table = read_table(source)
@@ -348,7 +347,7 @@ def _solved(work: _Work, source: Path, scenario: Scenario | None) -> Coefficient
 
 def _scenario_of(output: Output, source: Path, table: CoefficientTable) -> Scenario | None:
     """Scenario that a table was made from, where it says."""
-    from ..scenario import Scenario
+    from ..files.scenario import Scenario
 
     text = table.dataset.attrs.get("scenario")
     if not text:

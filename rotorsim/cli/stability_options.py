@@ -14,8 +14,8 @@ from ..errors import InputError
 from .options import file_or_shipped
 
 if TYPE_CHECKING:
-    from ..scenario import Scenario, ToleranceSettings
-    from ..stability import RotorOnFilm
+    from ..files.scenario import Scenario, ToleranceSettings
+    from ..machine.over_speed import RotorOnFilm
 
 _ROTOR, _MAP, _TOLERANCES = "Rotor", "Map over two inputs", "Tolerances"
 
@@ -273,8 +273,9 @@ def wanted_rotor(
     dofs: int | None,
 ) -> RotorOnFilm | None:
     """Rotor of the options, else the scenario's; None without either."""
-    from ..pipeline.rotors import rotor_on_film
-    from ..stability import JeffcottShaft, RigidShaft, load_rotor
+    from ..machine.over_speed import JeffcottShaft, RigidShaft
+    from ..machine.rotor import load_rotor
+    from ..study.stability import rotor_on_film
     from ..units import parse_quantity
 
     if file is not None:
@@ -319,8 +320,8 @@ def wanted_tolerances(
     """The scenario's tolerances with those of the options."""
     from dataclasses import replace
 
-    from ..scenario import ToleranceSettings
-    from ..scenario.tolerances import KINDS, parse_spread
+    from ..files.scenario import ToleranceSettings
+    from ..files.scenario.tolerances import KINDS, parse_spread
 
     found = dict(scenario.tolerances.spreads) if scenario.tolerances is not None else {}
     for text in texts or ():

@@ -16,10 +16,9 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from ..pipeline import StabilityCurve
-    from ..pipeline.campbell import Campbell
-    from ..pipeline.planes import Plane
-    from ..pipeline.tolerances import ToleranceStudy
+    from ..study.planes import Plane
+    from ..study.stability import Campbell, StabilityCurve
+    from ..study.tolerances import ToleranceStudy
 
 _QUANTILES = (0.05, 0.5, 0.95)
 _SHOWN = {
@@ -50,7 +49,7 @@ def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
 
 def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """The least stable oscillating mode over speed."""
-    from ..pipeline.campbell import whirl_word
+    from ..study.stability import whirl_word
 
     head = ("rpm", "mode", "Hz", "f/rev", "damping ratio", "log decrement", "decay 1/s", "whirl")
     table = grid(f"Least stable mode: {curve_title(curve)}", *head)
@@ -75,7 +74,7 @@ def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
 
 def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """Every branch at the highest speed."""
-    from ..pipeline.campbell import whirl_word
+    from ..study.stability import whirl_word
 
     found = modes.branches
     top = f"{found.parameter[-1] * RPM:.0f} rpm"
@@ -143,7 +142,7 @@ def plane_document(plane: Plane) -> dict[str, Any]:
 
 def plane_table(plane: Plane) -> list[RenderableType]:
     """How much of the map is stable, and its border at some places."""
-    from ..pipeline.stability_figures import held_words
+    from ..show.stability_figures import held_words
 
     head = f"Stability over {_name(plane.x)} and {_name(plane.y)}"
     held = held_words(dict(plane.held))

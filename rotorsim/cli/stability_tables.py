@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..pipeline.wording import RPM, VERDICTS, curve_title, number, thresholds_text
+from ..study.wording import RPM, VERDICTS, curve_title, number, thresholds_text
 from .tables import grid
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from ..pipeline import StabilityCurve
+    from ..study.stability import StabilityCurve
 
 
 def curve_table(curve: StabilityCurve) -> Table:

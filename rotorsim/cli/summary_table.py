@@ -6,14 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..pipeline.wording import (
-    RPM,
-    ZERO_CELSIUS,
-    curve_title,
-    number,
-    thresholds_text,
-    verdict_at_top,
-)
+from ..study.wording import RPM, ZERO_CELSIUS, curve_title, number, thresholds_text, verdict_at_top
 from .output import as_typed
 from .stability_tables import orbit_table
 from .tables import grid
@@ -22,7 +15,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
-    from ..pipeline import StabilityCurve
+    from ..study.stability import StabilityCurve
 
 _COLUMNS = (
     ("load kN", "load", 1e-3),

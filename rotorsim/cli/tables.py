@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from rich.table import Table
 from rich.text import Text
 
-from ..pipeline.wording import RPM, ZERO_CELSIUS, critical_mass_text, number, wall_share_text
+from ..study.wording import RPM, ZERO_CELSIUS, critical_mass_text, number, wall_share_text
 
 if TYPE_CHECKING:
-    from ..operating_point import OperatingPoint
+    from ..bearing.operating_point import OperatingPoint
 
 
 def grid(title: str, *columns: str) -> Table:

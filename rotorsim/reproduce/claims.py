@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-from . import (
-    claims_dynamics,
-    claims_film,
-    claims_performance,
-    claims_stability,
-    claims_tables,
-)
+from . import claims_dynamics, claims_film, claims_performance, claims_stability, claims_tables
 from .claim import Claim
 
 CLAIMS: tuple[Claim, ...] = (

@@ -6,16 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .claim import (
-    NEARLY,
-    PERCENT,
-    STRAIGHT,
-    Evidence,
-    Kind,
-    internal,
-    number,
-    statement,
-)
+from .claim import NEARLY, PERCENT, STRAIGHT, Evidence, Kind, internal, number, statement
 from .claims_tables import TABLE_2, TABLE_3
 from .evidence import (
     BOTH,

@@ -15,7 +15,7 @@ from .results import ISOTHERMAL, LIQUID, THD, WHOLE, PaperResults, Run, quantity
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..plots.paper import Line, Panel
+    from ..show.figures.paper import Line, Panel
 
 SPEED = "shaft speed [rpm]"
 NAMES = {ISOTHERMAL: "isothermal", THD: "THD"}
@@ -38,7 +38,7 @@ class NamedFigure:
 
 def paper_figures(r: PaperResults) -> list[NamedFigure]:
     """Figures 2 to 8, and one of the walls."""
-    from ..plots.paper import panels
+    from ..show.figures.paper import panels
 
     content = (
         ("fig2", _figure_2(r), 2, "Fig. 2: peak pressure and temperature against eccentricity "
@@ -62,7 +62,7 @@ def paper_figures(r: PaperResults) -> list[NamedFigure]:
 
 def _curve(r: PaperResults, name: str, scale: float = 1.0, friction: str = LIQUID) -> list[Line]:
     """One line for each model and clearance."""
-    from ..plots.paper import Line
+    from ..show.figures.paper import Line
 
     lines = []
     for colour, model in enumerate((ISOTHERMAL, THD)):
@@ -79,13 +79,13 @@ def _curve(r: PaperResults, name: str, scale: float = 1.0, friction: str = LIQUI
 
 
 def _panel(title: str, label: str, lines: list[Line], **options) -> Panel:
-    from ..plots.paper import Panel
+    from ..show.figures.paper import Panel
 
     return Panel(title, SPEED, label, lines, tick=5000.0, **options)
 
 
 def _figure_2(r: PaperResults) -> list[Panel]:
-    from ..plots.paper import Line, Panel
+    from ..show.figures.paper import Line, Panel
 
     found = []
     for title, label, name, scale in (
@@ -109,7 +109,7 @@ def _figure_2(r: PaperResults) -> list[Panel]:
 
 
 def _figure_3(r: PaperResults) -> list[Panel]:
-    from ..plots.paper import Line, Panel
+    from ..show.figures.paper import Line, Panel
 
     speeds = sorted({rpm for _, rpm in r.films})
     pressure, heat = [], []
@@ -203,7 +203,7 @@ def _figure_8(r: PaperResults) -> list[Panel]:
 
 
 def _figure_walls(r: PaperResults) -> list[Panel]:
-    from ..plots.paper import Line
+    from ..show.figures.paper import Line
 
     runs = {
         "isothermal": Run(ISOTHERMAL, CLEARANCES[0]),

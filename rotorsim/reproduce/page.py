@@ -11,12 +11,7 @@ from .claims import CLAIMS
 from .figures import WALL_NAMES
 from .frames import best_orientation, score_frames
 from .paper import COARSE_MESH, Walls
-from .remarks import (
-    designer_remarks,
-    force_and_friction,
-    frame_remark,
-    sensitivity_remark,
-)
+from .remarks import designer_remarks, force_and_friction, frame_remark, sensitivity_remark
 from .results import PaperResults
 from .tables import HEADLINES, Cell, sensitivity, wall_rows, wall_verdicts
 

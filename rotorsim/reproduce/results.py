@@ -9,9 +9,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bearing.operating_point import FilmFields, OperatingPoint
 from ..model import MeshSize
 from ..model.lubricant import ZERO_CELSIUS
-from ..operating_point import FilmFields, OperatingPoint
 from .paper import CLEARANCES, RAD_PER_RPM, TOP_RPM, Walls
 
 Array = NDArray[np.float64]

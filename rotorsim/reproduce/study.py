@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
 
+from ..bearing.operating_point import OperatingPoint
 from ..model import Case, MeshSize, RupturedFriction, ThermalModel
-from ..operating_point import OperatingPoint
-from ..sweep import Progress, available_cores, sweep_points
+from ..study.sweep import Progress, available_cores, sweep_points
 from .paper import (
     CLEARANCES,
     PAPER_MESH,
@@ -192,8 +192,8 @@ def compute(
 
 
 def solve_with_fields(case: Case, speed: float, *, initial: object = None) -> object:
-    """`rotorsim.solver.solve_case`, the fields kept."""
-    from ..solver import WarmStart, solve_case
+    """`rotorsim.bearing.solve.solve_case`, the fields kept."""
+    from ..bearing.solve import WarmStart, solve_case
 
     warm = initial if isinstance(initial, WarmStart) else None
     return solve_case(case, speed, initial=warm, keep_fields=True)

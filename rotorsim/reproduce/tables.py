@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from ..operating_point import OperatingPoint
+from ..bearing.operating_point import OperatingPoint
 from .claim import Claim, Evidence, Row, Verdict, judge
 from .claims import CLAIMS
 from .claims_tables import CLAIMS as TABLE_CLAIMS

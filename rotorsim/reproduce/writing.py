@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..atomic import replacing, write_text
-from ..records import plain
+from ..bearing.operating_point import plain
 from .assessment import Assessment
 from .blocks import to_html, to_markdown
 from .claim import Row
@@ -62,7 +62,7 @@ def write_docs(r: PaperResults, assessment: Assessment, folder: Path) -> list[Pa
 
 def png(figure: NamedFigure) -> bytes:
     """A figure as PNG."""
-    from ..plots import save_figure
+    from ..show.figures import save_figure
 
     with tempfile.TemporaryDirectory() as folder:
         (path,) = save_figure(figure.figure, Path(folder) / figure.name, ("png",), dpi=DPI)

@@ -9,7 +9,7 @@ import pytest
 from scenario_texts import BEARING, BOTH_MODELS, OIL
 
 from rotorsim.errors import ScenarioError
-from rotorsim.scenario import Scenario, load_scenario
+from rotorsim.files.scenario import Scenario, load_scenario
 
 GOOD = f"""\
 title = "test"

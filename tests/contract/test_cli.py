@@ -442,9 +442,9 @@ def test_a_closed_pipe_is_no_error(tmp_path):
 def test_warnings_that_differ_in_numbers_alone_are_told_once():
     import dataclasses
 
-    from rotorsim.pipeline.wording import grouped_warnings
-    from rotorsim.records import failed_point
-    from rotorsim.scenario import Scenario
+    from rotorsim.bearing.operating_point import failed_point
+    from rotorsim.files.scenario import Scenario
+    from rotorsim.study.wording import grouped_warnings
 
     case = Scenario.from_text(TINY).case(thermal_model="thd")
     points = [

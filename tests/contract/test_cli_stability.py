@@ -12,7 +12,7 @@ import pytest
 from command_line import CommandLine, strict
 from scenario_texts import BEARING, BOTH_MODELS, OIL
 
-from rotorsim.stability import rigid_threshold
+from rotorsim.bearing.whirl import rigid_threshold
 
 DATA = Path(__file__).parents[1] / "data"
 SCENARIO = f"""\

@@ -20,7 +20,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 import rotorsim
-from rotorsim.scenario.schema import ScenarioTables
+from rotorsim.files.scenario.schema import ScenarioTables
 from rotorsim.status import SolveStatus, Stability
 
 DOCS = Path(__file__).parents[2] / "docs"

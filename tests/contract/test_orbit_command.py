@@ -126,8 +126,8 @@ def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
     from rerun.chunk import RrdReader
 
     from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, rigid_rotor, simulate
-    from rotorsim.pipeline.recordings import orbit_tracks
-    from rotorsim.recording.live import LiveView
+    from rotorsim.show.recording.live import LiveView
+    from rotorsim.show.recordings import orbit_tracks
 
     path = tmp_path / "live.rrd"
     stream = rr.RecordingStream("rotorsim", send_properties=False)
@@ -190,7 +190,7 @@ def test_coefficients_of_another_program_run_in_time(call, here, tmp_path):
 
 
 def _as_csv(here, tmp_path) -> Path:
-    from rotorsim.table import CoefficientTable
+    from rotorsim.bearing.table import CoefficientTable
 
     one = CoefficientTable.load(tmp_path / "coefficients" / "linear.nc")
     k, c = one.stiffness.reshape(-1, 4), one.damping.reshape(-1, 4)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from browser import CHROMIUM, visit
 
-from rotorsim.pipeline.main_job import compute
-from rotorsim.report import write_report
-from rotorsim.scenario import Scenario
+from rotorsim.files.scenario import Scenario
 from rotorsim.shipped import shipped_scenarios
-from rotorsim.sweep import as_table, sweep_points
+from rotorsim.show.main_job import compute
+from rotorsim.show.report import write_report
+from rotorsim.study.sweep import as_table, sweep_points
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Debian's package chromium")
 

@@ -25,8 +25,8 @@ initial_displacement = ["1 um", "0 um"]
 
 @pytest.fixture(scope="module")
 def good_table(tmp_path_factory) -> Path:
-    from rotorsim.scenario import Scenario
-    from rotorsim.sweep import tabulate
+    from rotorsim.files.scenario import Scenario
+    from rotorsim.study.sweep import tabulate
 
     path = tmp_path_factory.mktemp("good") / "good.nc"
     return tabulate(Scenario.from_text(TINY), workers=1).save(path)
@@ -212,9 +212,9 @@ def test_damaged_and_newer_tables_are_refused_with_a_reason(how, words, nonsense
 KILLING = """
 import json, os, random, signal, sys, time
 from pathlib import Path
-from rotorsim.journal import Journal
-from rotorsim.scenario import Scenario
-from rotorsim.sweep import sweep_points, tabulate
+from rotorsim.study.journal import Journal
+from rotorsim.files.scenario import Scenario
+from rotorsim.study.sweep import sweep_points, tabulate
 
 scenario, journal = Scenario.from_text(Path(sys.argv[1]).read_text()), Path(sys.argv[2])
 cases, speeds = list(scenario.cases()), [float(speed) for speed in scenario.speeds]

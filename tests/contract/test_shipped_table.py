@@ -9,7 +9,7 @@ import pytest
 from command_line import strict
 
 import rotorsim as rs
-from rotorsim.stability import threshold_speeds
+from rotorsim.machine.modes import threshold_speeds
 
 ROOT = Path(__file__).parents[2]
 

@@ -20,21 +20,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from tolerances import HEAT_BALANCE, MASS_BALANCE, SIMILARITY
 
+from rotorsim.bearing.operating_point import OperatingPoint
+from rotorsim.bearing.solve import solve_case
 from rotorsim.film.flow import film_flow
 from rotorsim.film.layers import isoviscous_layers
 from rotorsim.film.linearized import linearize
 from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
-from rotorsim.model import (
-    Bearing,
-    BushModel,
-    Groove,
-    InletModel,
-    LoadTarget,
-    ShaftModel,
-)
-from rotorsim.operating_point import OperatingPoint
-from rotorsim.solver import solve_case
+from rotorsim.model import Bearing, BushModel, Groove, InletModel, LoadTarget, ShaftModel
 from rotorsim.status import SolveStatus
 
 MESH = (48, 12)

@@ -8,9 +8,9 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rotorsim.checks import derived_numbers, regime_warnings
+from rotorsim.bearing.checks import derived_numbers, regime_warnings
 from rotorsim.errors import ScenarioError
-from rotorsim.scenario import Scenario
+from rotorsim.files.scenario import Scenario
 
 TEXTS = [
     path.read_text(encoding="utf-8")

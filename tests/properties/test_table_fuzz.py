@@ -9,9 +9,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rotorsim.bearing.table import CoefficientTable
 from rotorsim.errors import TableError
-from rotorsim.interchange import read_table, write_table
-from rotorsim.table import CoefficientTable
+from rotorsim.files.formats import read_table, write_table
 
 CSV = """\
 # speed, K and C

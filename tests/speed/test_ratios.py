@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.model import (
     Bearing,
     BushModel,
@@ -30,7 +31,6 @@ from rotorsim.model import (
     ThermalModel,
     ThermalSettings,
 )
-from rotorsim.solver import solve_case
 
 OIL = Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13)
 SPEED = 1570.8

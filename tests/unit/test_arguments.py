@@ -9,10 +9,10 @@ import pytest
 from scenario_texts import BEARING, CONSTANT_OIL
 
 import rotorsim as rs
+from rotorsim.bearing.interpolation import Coefficients
 from rotorsim.errors import InputError
-from rotorsim.scenario import Scenario
-from rotorsim.stability import RigidShaft, rotor_modes, rotor_thresholds
-from rotorsim.table import Coefficients
+from rotorsim.files.scenario import Scenario
+from rotorsim.machine.over_speed import RigidShaft, rotor_modes, rotor_thresholds
 
 SCENARIO = Scenario.from_text(
     f"{BEARING}\n{CONSTANT_OIL}\n[film]\nmesh = {{ circumferential = 32, axial = 8 }}\n"

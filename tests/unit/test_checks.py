@@ -7,11 +7,8 @@ from dataclasses import replace
 
 import pytest
 
-from rotorsim.checks import (
-    derived_numbers,
-    regime_warnings,
-    temperature_coefficient,
-)
+from rotorsim.bearing.checks import derived_numbers, regime_warnings, temperature_coefficient
+from rotorsim.bearing.operating_point import HeatBalance
 from rotorsim.model import (
     Bearing,
     BushModel,
@@ -29,7 +26,6 @@ from rotorsim.model import (
     ThermalSettings,
     WaltherViscosity,
 )
-from rotorsim.operating_point import HeatBalance
 
 OMEGA = 15000 * math.pi / 30
 OIL = Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13)

@@ -7,8 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from rotorsim.checks import derived_numbers
-from rotorsim.drawing import drawing_numbers, drawing_warnings, heating_warnings
+from rotorsim.bearing.checks import derived_numbers
+from rotorsim.bearing.drawing import drawing_numbers, drawing_warnings, heating_warnings
+from rotorsim.bearing.solve import solve_case
+from rotorsim.files.scenario import load_scenario
 from rotorsim.model import (
     Bearing,
     Case,
@@ -22,9 +24,7 @@ from rotorsim.model import (
     ThermalModel,
     ThermalSettings,
 )
-from rotorsim.scenario import load_scenario
 from rotorsim.shipped import shipped_scenarios
-from rotorsim.solver import solve_case
 
 OIL = Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13)
 GROOVES = (Groove(math.pi / 2, 0.4, supply_pressure=1.5e5),)

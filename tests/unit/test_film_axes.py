@@ -7,17 +7,20 @@ import numpy as np
 import pytest
 from scenario_texts import BEARING, BOTH_MODELS, OIL
 
-from rotorsim import solver
+from rotorsim.bearing import solve as solver
+from rotorsim.bearing.solve import solve_case
+from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError, ScenarioError
+from rotorsim.files.scenario import Scenario, ToleranceSettings
+from rotorsim.files.scenario.tolerances import parse_spread
+from rotorsim.machine.map import stability_map
+from rotorsim.machine.modes import threshold_speeds
+from rotorsim.machine.over_speed import RigidShaft
 from rotorsim.model import LoadTarget, MeshSize
-from rotorsim.pipeline.film_axes import changed, tabulate_over
-from rotorsim.pipeline.stability_figures import tolerance_figure
-from rotorsim.pipeline.tolerances import FilmThreshold, study_tolerances, tolerances_of
-from rotorsim.scenario import Scenario, ToleranceSettings
-from rotorsim.scenario.tolerances import parse_spread
-from rotorsim.solver import solve_case
-from rotorsim.stability import RigidShaft, rigid_threshold, stability_map, threshold_speeds
+from rotorsim.show.stability_figures import tolerance_figure
 from rotorsim.status import SolveStatus
+from rotorsim.study.axes import changed, tabulate_over
+from rotorsim.study.tolerances import FilmThreshold, study_tolerances, tolerances_of
 
 HEAD = f'title = "small"\n{BEARING}'
 GROOVE = """\

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from film_cases import thermal_case
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.errors import InputError
 from rotorsim.model import Bearing, BushModel
-from rotorsim.solver import solve_case
 from rotorsim.status import SolveStatus
 
 

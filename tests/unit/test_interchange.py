@@ -14,15 +14,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rotorsim.bearing.operating_point import OperatingPoint
+from rotorsim.bearing.table import CoefficientTable
+from rotorsim.bearing.table_data import COEFFICIENTS
 from rotorsim.errors import InputError, TableError
-from rotorsim.interchange import FORMATS, read_table, write_table
-from rotorsim.interchange.conventions import from_ross, to_ross
-from rotorsim.operating_point import OperatingPoint
-from rotorsim.stability.over_speed import rotor_modes
-from rotorsim.stability.rotor import GeneralRotor
+from rotorsim.files.formats import FORMATS, read_table, write_table
+from rotorsim.files.ross import from_ross, to_ross
+from rotorsim.machine.over_speed import rotor_modes
+from rotorsim.machine.rotor import GeneralRotor
 from rotorsim.status import SolveStatus, Stability
-from rotorsim.table import CoefficientTable
-from rotorsim.table.variables import COEFFICIENTS
 
 DATA = Path(__file__).parents[1] / "data"
 SPEEDS = (100.0, 250.0, 400.0, 700.0)

@@ -10,6 +10,9 @@ import pytest
 from scipy.linalg import expm
 
 from rotorsim.errors import InputError, ScenarioError
+from rotorsim.files.scenario import OrbitKind, Scenario, load_scenario
+from rotorsim.files.scenario.settings import ActuatorSettings, Design
+from rotorsim.machine.matrices import state_matrix
 from rotorsim.model import Cavitation, Inception
 from rotorsim.model.loads import BaseMotion, BaseShock, HarmonicForce, StepForce
 from rotorsim.model.rotor import JeffcottRotor, rigid_mass
@@ -24,13 +27,9 @@ from rotorsim.orbit import (
     orbit_ellipse,
     simulate_pieces,
 )
-from rotorsim.pipeline import simulate_orbit
-from rotorsim.pipeline.orbits import orbit_problem
-from rotorsim.pipeline.summary import describe_orbit
-from rotorsim.scenario import OrbitKind, Scenario, load_scenario
-from rotorsim.scenario.settings import ActuatorSettings, Design
-from rotorsim.stability.matrices import state_matrix
-from rotorsim.sweep import tabulate
+from rotorsim.study.orbits import orbit_problem, simulate_orbit
+from rotorsim.study.summary import describe_orbit
+from rotorsim.study.sweep import tabulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 SHIPPED = sorted(SCENARIOS.glob("orbit_*.toml"))

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scenario_texts import BEARING, OIL
 
+from rotorsim.bearing.operating_point import point_from_dict, point_to_dict
+from rotorsim.bearing.solve import operating_point
+from rotorsim.files.scenario import Scenario
 from rotorsim.film.heat import NORTH, layer_fluxes
 from rotorsim.film.solution import solve_film
-from rotorsim.records import point_from_dict, point_to_dict
-from rotorsim.scenario import Scenario
-from rotorsim.solver import operating_point
 
 TEXT = f"""\
 {BEARING}

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from rotorsim.bearing.operating_point import failed_point
 from rotorsim.errors import InputError
-from rotorsim.pipeline import orbits as orbit_steps
-from rotorsim.pipeline.main_job import Attempts, compute
-from rotorsim.pipeline.orbits import static_position
-from rotorsim.pipeline.stability import stability_curves
-from rotorsim.pipeline.writing import write_results
-from rotorsim.records import failed_point
-from rotorsim.scenario import Scenario
-from rotorsim.sweep import as_table, sweep_points
+from rotorsim.files.scenario import Scenario
+from rotorsim.show.main_job import Attempts, compute
+from rotorsim.show.writing import write_results
+from rotorsim.study import orbits as orbit_steps
+from rotorsim.study.orbits import static_position
+from rotorsim.study.stability import stability_curves
+from rotorsim.study.sweep import as_table, sweep_points
 
 TEXT = """
 [bearing]
@@ -140,8 +140,8 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
     """Of the rotor, else of the critical masses, else of what weighs as much as the load."""
     from dataclasses import replace
 
-    from rotorsim.drawing import STANDARD_GRAVITY
-    from rotorsim.pipeline.main_job import map_of
+    from rotorsim.bearing.drawing import STANDARD_GRAVITY
+    from rotorsim.show.main_job import map_of
 
     table = as_table(points, scenario)
     alone = replace(scenario, rotor=None)

@@ -10,8 +10,8 @@ import matplotlib.colors
 import numpy as np
 import pytest
 
-from rotorsim import plots
-from rotorsim.plots.style import MODEL_STYLES
+from rotorsim.show import figures as plots
+from rotorsim.show.figures.style import MODEL_STYLES
 
 SPEED = np.linspace(100.0, 1500.0, 40)
 MASS = np.linspace(10.0, 500.0, 30)
@@ -169,7 +169,7 @@ def test_profile_is_drawn_in_megapascal_over_degrees():
 
 
 def test_importing_plots_leaves_matplotlib_alone():
-    code = "import sys, rotorsim.plots; assert 'matplotlib' not in sys.modules"
+    code = "import sys, rotorsim.show.figures; assert 'matplotlib' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
     with pytest.raises(AttributeError, match="no_such_plot"):
         _ = plots.no_such_plot

@@ -14,7 +14,7 @@ import rerun as rr
 from rerun.chunk import RrdReader
 
 from rotorsim.errors import InputError
-from rotorsim.recording import (
+from rotorsim.show.recording import (
     CascadePicture,
     EigenvaluePath,
     FilmSurface,
@@ -28,11 +28,11 @@ from rotorsim.recording import (
     viewer,
     write_recording,
 )
-from rotorsim.recording.chart import nice_ticks
-from rotorsim.recording.colormaps import colours
-from rotorsim.recording.map_view import raster, verdict_pixels
-from rotorsim.recording.series_view import envelope_rows, whirl_ratio
-from rotorsim.recording.timeline import frame_rows, thin
+from rotorsim.show.recording.chart import nice_ticks
+from rotorsim.show.recording.colormaps import colours
+from rotorsim.show.recording.map_view import raster, verdict_pixels
+from rotorsim.show.recording.series_view import envelope_rows, whirl_ratio
+from rotorsim.show.recording.timeline import frame_rows, thin
 
 C = 1e-4
 
@@ -214,7 +214,7 @@ def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
     def fail(*_):
         raise RuntimeError("stop")
 
-    monkeypatch.setattr("rotorsim.recording.write.log_contents", fail)
+    monkeypatch.setattr("rotorsim.show.recording.write.log_contents", fail)
     with pytest.raises(RuntimeError):
         write_recording(file, contents())
     assert file.read_bytes() == b"old"
@@ -317,7 +317,7 @@ def test_viewer_without_display_or_file(tmp_path, monkeypatch):
 
 
 def test_importing_the_recording_leaves_rerun_alone():
-    code = "import sys, rotorsim.recording; assert 'rerun' not in sys.modules"
+    code = "import sys, rotorsim.show.recording; assert 'rerun' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, env=dict(os.environ))
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from rotorsim.recording import (
+from rotorsim.files.scenario.settings import OrbitKind
+from rotorsim.show.recording import (
     CascadePicture,
     FilmSurface,
     OrbitTrack,
@@ -16,11 +17,10 @@ from rotorsim.recording import (
     SpectrumPicture,
     write_recording,
 )
-from rotorsim.recording.film_view import changing
-from rotorsim.recording.quantities import quantities
-from rotorsim.recording.series_view import whirl_ratio
-from rotorsim.recording.timeline import distinct_speeds
-from rotorsim.scenario.settings import OrbitKind
+from rotorsim.show.recording.film_view import changing
+from rotorsim.show.recording.quantities import quantities
+from rotorsim.show.recording.series_view import whirl_ratio
+from rotorsim.show.recording.timeline import distinct_speeds
 
 C = 1e-4
 COUNT = 801
@@ -107,7 +107,7 @@ def test_each_kind_opens_with_what_it_is_about(tmp_path, kind, shown, hidden):
 
 
 def test_every_kind_of_orbit_is_among_them():
-    from rotorsim.recording.layout import FRONTS
+    from rotorsim.show.recording.layout import FRONTS
 
     assert set(FRONTS) == {kind.value for kind in OrbitKind}
 

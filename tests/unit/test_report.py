@@ -11,17 +11,16 @@ import numpy as np
 import pytest
 from scenario_texts import BEARING, CONSTANT_OIL
 
-from rotorsim.operating_point import HeatBalance, OperatingPoint
+from rotorsim.bearing.operating_point import HeatBalance, OperatingPoint
+from rotorsim.files.scenario import Scenario
+from rotorsim.machine.map import stability_map
 from rotorsim.orbit import Orbit, OrbitStatus
-from rotorsim.pipeline.main_job import Results
-from rotorsim.pipeline.rotors import rotor_on_film
-from rotorsim.pipeline.stability import stability_curves
-from rotorsim.report import html, report_page, write_report
-from rotorsim.report.results import log_decrement
-from rotorsim.scenario import Scenario
-from rotorsim.stability import stability_map
+from rotorsim.show.main_job import Results
+from rotorsim.show.report import html, report_page, write_report
+from rotorsim.show.report.results import log_decrement
 from rotorsim.status import SolveStatus
-from rotorsim.sweep import as_table, sweep_points
+from rotorsim.study.stability import rotor_on_film, stability_curves
+from rotorsim.study.sweep import as_table, sweep_points
 
 VOID = {"meta", "link", "img", "br", "hr"}
 TEXT = f"""\
@@ -212,7 +211,7 @@ def test_a_rigid_rotor_needs_no_such_words(results):
 
 
 def test_long_figures_become_pixels():
-    from rotorsim import plots
+    from rotorsim.show import figures as plots
 
     x = np.cos(np.linspace(0.0, 99.0, 40_000)) * 1e-5 * np.linspace(0.1, 1.0, 40_000)
     noisy = x + 1e-6 * np.random.default_rng(1).normal(size=x.size)

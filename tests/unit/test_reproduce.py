@@ -11,8 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rotorsim.bearing.operating_point import OperatingPoint
+from rotorsim.files.scenario import load_scenario
 from rotorsim.model import MeshSize, ThermalModel
-from rotorsim.operating_point import OperatingPoint
 from rotorsim.reproduce.assessment import assess
 from rotorsim.reproduce.blocks import Grid, Paragraph, to_html, to_markdown
 from rotorsim.reproduce.claim import (
@@ -45,7 +46,6 @@ from rotorsim.reproduce.results import ISOTHERMAL, LIQUID, THD, WHOLE, PaperResu
 from rotorsim.reproduce.study import paper_study
 from rotorsim.reproduce.tables import with_walls
 from rotorsim.reproduce.variants import VARIANTS
-from rotorsim.scenario import load_scenario
 from rotorsim.status import SolveStatus
 
 ROOT = Path(__file__).parents[2]

@@ -13,6 +13,7 @@ import pytest
 from scenario_texts import BEARING, CONSTANT_OIL
 
 from rotorsim.errors import ScenarioError
+from rotorsim.files.scenario import OrbitForce, Scenario, SpeedRamp, load_scenario
 from rotorsim.film.geometry import bore_offset
 from rotorsim.model import (
     EccentricityTarget,
@@ -24,7 +25,6 @@ from rotorsim.model import (
     ThermalModel,
     WaltherViscosity,
 )
-from rotorsim.scenario import OrbitForce, Scenario, SpeedRamp, load_scenario
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 MINIMAL = f"""\

@@ -5,9 +5,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from rotorsim.bearing.interpolation import Coefficients
+from rotorsim.bearing.table import CoefficientTable
+from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
-from rotorsim.stability.actuator import ActuatedForce
-from rotorsim.stability.control import (
+from rotorsim.machine.actuator import ActuatedForce
+from rotorsim.machine.control import (
     StateFeedback,
     design_lqr,
     design_pd,
@@ -19,10 +22,8 @@ from rotorsim.stability.control import (
     step_response,
     unbalance_response,
 )
-from rotorsim.stability.rotor import GeneralRotor
-from rotorsim.stability.statespace import rotor_state_space, state_space
-from rotorsim.stability.whirl import rigid_threshold
-from rotorsim.table import Coefficients, CoefficientTable
+from rotorsim.machine.rotor import GeneralRotor
+from rotorsim.machine.statespace import rotor_state_space, state_space
 
 K = np.array([[2.2e8, 6.6e8], [-0.9e8, 3.0e8]])
 C = np.array([[7e5, 1e5], [1e5, 3e5]])

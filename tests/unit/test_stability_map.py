@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from rotorsim.bearing.table import CoefficientTable
+from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError, OutOfRangeError
-from rotorsim.stability.map import STABLE, UNKNOWN, UNSTABLE, stability_map
-from rotorsim.stability.matrices import state_matrix
-from rotorsim.stability.whirl import rigid_threshold
-from rotorsim.table import CoefficientTable
+from rotorsim.machine.map import STABLE, UNKNOWN, UNSTABLE, stability_map
+from rotorsim.machine.matrices import state_matrix
 
 SPEEDS = np.array([100.0, 300.0, 500.0, 900.0])
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from rotorsim.bearing.table import CoefficientTable
+from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
-from rotorsim.stability.matrices import second_order_state_matrix
-from rotorsim.stability.modes import find_thresholds, rigid_modes, threshold_speeds, track_modes
-from rotorsim.stability.whirl import rigid_threshold
-from rotorsim.table import CoefficientTable
+from rotorsim.machine.matrices import second_order_state_matrix
+from rotorsim.machine.modes import find_thresholds, rigid_modes, threshold_speeds, track_modes
 
 
 def crossing(p):

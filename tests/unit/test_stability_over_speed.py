@@ -3,17 +3,12 @@
 import numpy as np
 import pytest
 
+from rotorsim.bearing.table import CoefficientTable
+from rotorsim.bearing.whirl import flexible_critical_mass
 from rotorsim.errors import InputError
-from rotorsim.stability import flexible_critical_mass
-from rotorsim.stability.modes import rigid_modes, threshold_speeds
-from rotorsim.stability.over_speed import (
-    JeffcottShaft,
-    RigidShaft,
-    rotor_modes,
-    rotor_thresholds,
-)
-from rotorsim.stability.rotor import GeneralRotor, load_rotor
-from rotorsim.table import CoefficientTable
+from rotorsim.machine.modes import rigid_modes, threshold_speeds
+from rotorsim.machine.over_speed import JeffcottShaft, RigidShaft, rotor_modes, rotor_thresholds
+from rotorsim.machine.rotor import GeneralRotor, load_rotor
 
 NAMES = [f"{a}{i}{j} [{u}]" for a, u in (("k", "N/m"), ("c", "N s/m")) for i in "xy" for j in "xy"]
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rotorsim.errors import InputError
-from rotorsim.stability.matrices import state_matrix
-from rotorsim.stability.rates import decay_rate_map, decay_rates, eigenvalues
+from rotorsim.machine.matrices import state_matrix
+from rotorsim.machine.rates import decay_rate_map, decay_rates, eigenvalues
 
 N = 20_000
 

@@ -6,17 +6,12 @@ import pytest
 from scipy.io import savemat
 from scipy.sparse import csc_matrix
 
+from rotorsim.bearing.interpolation import Coefficients
+from rotorsim.bearing.whirl import flexible_critical_mass, rigid_threshold
 from rotorsim.errors import InputError
-from rotorsim.stability.matrices import state_matrix
-from rotorsim.stability.rotor import GeneralRotor, load_rotor
-from rotorsim.stability.statespace import (
-    jeffcott_state_space,
-    poles,
-    rotor_state_space,
-    state_space,
-)
-from rotorsim.stability.whirl import flexible_critical_mass, rigid_threshold
-from rotorsim.table import Coefficients
+from rotorsim.machine.matrices import state_matrix
+from rotorsim.machine.rotor import GeneralRotor, load_rotor
+from rotorsim.machine.statespace import jeffcott_state_space, poles, rotor_state_space, state_space
 
 K = np.array([[2.2e8, 6.6e8], [-0.9e8, 3.0e8]])
 C = np.array([[7e5, 1e5], [1e5, 3e5]])

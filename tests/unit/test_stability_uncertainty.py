@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotorsim.errors import InputError
-from rotorsim.stability.uncertainty import SampleError, Tolerance, propagate, sample_inputs
+from rotorsim.machine.uncertainty import SampleError, Tolerance, propagate, sample_inputs
 
 INPUTS = {
     "clearance": Tolerance(100.0, 10.0),

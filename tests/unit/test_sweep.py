@@ -16,9 +16,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rotorsim.chunks import failed_point
+from rotorsim.bearing.operating_point import (
+    HeatBalance,
+    OperatingPoint,
+    point_from_dict,
+    point_to_dict,
+    strict_json,
+)
 from rotorsim.errors import InputError
-from rotorsim.journal import Journal
 from rotorsim.model import (
     Bearing,
     Case,
@@ -29,10 +34,9 @@ from rotorsim.model import (
     ThermalModel,
     ThermalSettings,
 )
-from rotorsim.operating_point import HeatBalance, OperatingPoint
-from rotorsim.records import point_from_dict, point_to_dict, strict_json
 from rotorsim.status import SolveStatus, Stability
-from rotorsim.sweep import CHUNK, sweep_points
+from rotorsim.study.journal import Journal
+from rotorsim.study.sweep import CHUNK, failed_point, sweep_points
 
 ROOT = Path(__file__).parents[2]
 SPEEDS = [100.0 * (step + 1) for step in range(12)]
@@ -269,9 +273,9 @@ def solve(case, speed, *, initial=None):
 """
 SCRIPT = """
 import solver_for_test as s
-from rotorsim.sweep import sweep_points
+from rotorsim.study.sweep import sweep_points
 points = sweep_points(s.CASES, s.SPEEDS, workers=2, solve_case=s.solve, resume={journal!r})
-from rotorsim.records import strict_json
+from rotorsim.bearing.operating_point import strict_json
 print(strict_json([(point.speed, point.status, point.load) for point in points]))
 """
 

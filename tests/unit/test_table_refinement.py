@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from rotorsim.bearing.table import CoefficientTable
 from rotorsim.errors import OutOfRangeError, TableError
-from rotorsim.stability import stability_map
-from rotorsim.table import CoefficientTable
+from rotorsim.machine.map import stability_map
 
 NAMES = [f"{a}{i}{j} [{u}]" for a, u in (("k", "N/m"), ("c", "N s/m")) for i in "xy" for j in "xy"]
 LOADS = np.geomspace(1e3, 2e4, 7)

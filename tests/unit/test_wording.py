@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from rotorsim.pipeline.stability import StabilityCurve
-from rotorsim.pipeline.wording import (
+from rotorsim.study.stability import StabilityCurve
+from rotorsim.study.wording import (
     RPM,
     number,
     thresholds_text,

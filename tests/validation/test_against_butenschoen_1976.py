@@ -15,8 +15,8 @@ from tolerances import (
     SECOND_METHOD,
 )
 
-from rotorsim.operating_point import OperatingPoint
-from rotorsim.solver import solve_case
+from rotorsim.bearing.operating_point import OperatingPoint
+from rotorsim.bearing.solve import solve_case
 
 ROWS = reference_rows("butenschoen1976_full360.csv")
 TRUSTED = [row for row in ROWS if row["epsilon"] <= 0.9]

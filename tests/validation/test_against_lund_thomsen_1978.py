@@ -17,8 +17,8 @@ from tolerances import (
     SECOND_METHOD_COEFFICIENTS,
 )
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.model import LoadTarget
-from rotorsim.solver import solve_case
 
 ROWS = reference_rows("lund_thomsen1978_two_axial_groove.csv")
 NAMES = ("Kxx", "Kxy", "Kyx", "Kyy", "Bxx", "Bxy", "Byx", "Byy")

@@ -17,7 +17,7 @@ from film_cases import (
 )
 from tolerances import OCVIRK
 
-from rotorsim.solver import solve_case
+from rotorsim.bearing.solve import solve_case
 
 ROWS = [r for r in reference_rows("ocvirk_short_bearing.csv") if r["eps"] >= 0.1]
 SHORT = 0.02

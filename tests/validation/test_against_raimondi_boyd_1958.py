@@ -14,7 +14,7 @@ from film_cases import CLEARANCE, RADIUS, SPEED, isothermal_case, reference_rows
 from film_finite_elements import element_film
 from tolerances import RAIMONDI_BOYD, RAIMONDI_BOYD_ATTITUDE_DEG, SECOND_METHOD
 
-from rotorsim.solver import solve_case
+from rotorsim.bearing.solve import solve_case
 
 ROWS = [
     row

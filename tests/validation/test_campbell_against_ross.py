@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rotorsim.stability.over_speed import rotor_modes, rotor_thresholds
-from rotorsim.stability.rotor import GeneralRotor
-from rotorsim.table import Coefficients, CoefficientTable
+from rotorsim.bearing.interpolation import Coefficients
+from rotorsim.bearing.table import CoefficientTable
+from rotorsim.machine.over_speed import rotor_modes, rotor_thresholds
+from rotorsim.machine.rotor import GeneralRotor
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests" / "data"

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rotorsim.stability.whirl import rigid_threshold, rigid_thresholds
+from rotorsim.bearing.whirl import rigid_threshold, rigid_thresholds
 from rotorsim.status import Stability
 
 DATA = Path(__file__).parents[1] / "data"

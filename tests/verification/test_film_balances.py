@@ -10,6 +10,7 @@ import pytest
 from film_cases import CLEARANCE, elliptical_arcs, split_grooves, thermal_case
 from tolerances import HALF_SOMMERFELD_POWER, HEAT_BALANCE, MASS_BALANCE, ROUNDING
 
+from rotorsim.bearing.solve import operating_point, solve_case
 from rotorsim.film.flow import film_flow
 from rotorsim.film.heat import energy_problem, layer_fluxes
 from rotorsim.film.solution import solve_film
@@ -23,7 +24,6 @@ from rotorsim.model import (
     ShaftModel,
     ThermalModel,
 )
-from rotorsim.solver import operating_point, solve_case
 
 RADIUS, LENGTH, SPEED = 0.05, 0.08, 600.0
 FED = tuple(Groove(s * 0.5 * math.pi, math.radians(30.0), 0.06, 1e5) for s in (-1.0, 1.0))

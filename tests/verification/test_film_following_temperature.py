@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.model import (
     Bearing,
     Case,
@@ -20,7 +21,6 @@ from rotorsim.model import (
     ThermalSettings,
     ViscosityResponse,
 )
-from rotorsim.solver import solve_case
 
 LOAD, SPEED, CLEARANCE = 10e3, 1500.0, 1e-4
 QUARTER = math.pi / 2.0

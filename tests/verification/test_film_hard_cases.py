@@ -3,8 +3,8 @@
 import pytest
 from film_cases import elliptical_arcs, isothermal_case, split_grooves, thermal_case
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.model import Bearing, Groove, LoadTarget, ShaftModel
-from rotorsim.solver import solve_case
 
 
 @pytest.mark.parametrize("target", [0.3, 0.45, LoadTarget(2000.0), LoadTarget(20000.0)], ids=str)

@@ -14,6 +14,7 @@ import pytest
 from film_cases import thermal_case
 from tolerances import NAHME, ORDER
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.model import (
     Bearing,
     BushModel,
@@ -22,7 +23,6 @@ from rotorsim.model import (
     Lubricant,
     ShaftModel,
 )
-from rotorsim.solver import solve_case
 
 RADIUS, LENGTH, GAP = 0.05, 0.02, 20e-6
 MU, BETA, CONDUCTIVITY, T0 = 0.0277, 0.034, 0.13, 313.15

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from film_cases import elliptical_arcs, isothermal_case, split_grooves, thermal_case
 
+from rotorsim.bearing.solve import solve_case
 from rotorsim.film.layers import isoviscous_layers
 from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
@@ -30,7 +31,6 @@ from rotorsim.orbit import (
     simulate,
     steady_part,
 )
-from rotorsim.solver import solve_case
 
 RADIUS, CLEARANCE, VISCOSITY, RATIO = 0.025, 50e-6, 0.02, 0.5
 SPEED = 12000.0 * math.pi / 30.0

@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rotorsim.errors import InputError
-from rotorsim.stability import (
+from rotorsim.bearing.whirl import (
     flexible_critical_mass,
     rigid_threshold,
     rigid_thresholds,
     routh_coefficients,
-    second_order_state_matrix,
-    state_matrix,
 )
+from rotorsim.errors import InputError
+from rotorsim.machine.matrices import second_order_state_matrix, state_matrix
 from rotorsim.status import Stability
 
 SAMPLES = 20_000

@@ -3,6 +3,11 @@
 import numpy as np
 import pytest
 
+from rotorsim.bearing.interpolation import Coefficients
+from rotorsim.bearing.whirl import rigid_threshold
+from rotorsim.machine.actuator import ActuatedForce
+from rotorsim.machine.control import StateFeedback, design_lqr, design_pd, loop_margins
+from rotorsim.machine.statespace import state_space
 from rotorsim.orbit import (
     OrbitProblem,
     OrbitStatus,
@@ -14,10 +19,6 @@ from rotorsim.orbit import (
     rigid_rotor,
     simulate,
 )
-from rotorsim.stability import rigid_threshold, state_space
-from rotorsim.stability.actuator import ActuatedForce
-from rotorsim.stability.control import StateFeedback, design_lqr, design_pd, loop_margins
-from rotorsim.table import Coefficients
 
 FILM = ShortBearingForce(viscosity=0.0277, length=0.04, radius=0.05, radial_clearance=1e-4)
 LOAD, SPEED = 3000.0, 1000.0

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 from scipy.linalg import expm
 
-from rotorsim.recording import (
+from rotorsim.show.recording import (
     EigenvaluePath,
     FilmSurface,
     MapPicture,
@@ -23,7 +23,7 @@ from rotorsim.recording import (
     classify,
     write_recording,
 )
-from rotorsim.recording.viewer import viewer_program
+from rotorsim.show.recording.viewer import viewer_program
 
 R, L, C, MU, ECC = 0.05, 0.08, 100e-6, 0.0277, 0.5
 PHI = np.arctan2(np.pi * np.sqrt(1 - ECC**2), 4 * ECC)

@@ -7,10 +7,10 @@ import pytest
 from command_line import called
 from viewer_pictures import assert_healthy, circle_of, dot_of, near
 
-from rotorsim.pipeline import simulate_orbit
-from rotorsim.recording import live
-from rotorsim.recording.colormaps import colours
-from rotorsim.scenario import load_scenario
+from rotorsim.files.scenario import load_scenario
+from rotorsim.show.recording import live
+from rotorsim.show.recording.colormaps import colours
+from rotorsim.study.orbits import simulate_orbit
 
 pytestmark = pytest.mark.slow
 

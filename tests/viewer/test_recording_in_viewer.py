@@ -37,7 +37,7 @@ def test_revolutions_timeline_moves_the_journal_too(open_page, contents):
 
 
 def test_film_is_coloured_and_changes_with_speed(open_page):
-    from rotorsim.recording.colormaps import colours
+    from rotorsim.show.recording.colormaps import colours
 
     viewer = open_page("Film")
     warm = []
@@ -55,8 +55,8 @@ def test_film_is_coloured_and_changes_with_speed(open_page):
 
 
 def test_map_shows_what_heating_decides(open_page, contents):
-    from rotorsim.recording import Verdict
-    from rotorsim.recording.map_view import VERDICT_COLOURS, verdict_pixels
+    from rotorsim.show.recording import Verdict
+    from rotorsim.show.recording.map_view import VERDICT_COLOURS, verdict_pixels
 
     viewer = open_page("Stability")
     viewer.client.set_time("time", duration=0.1, play_state="paused")

@@ -1,0 +1,289 @@
+"""One operating point: what the film solver hands to everything that follows."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import Case, EccentricityTarget, LoadTarget
+from ..status import SolveStatus, Stability
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FilmFields:
+    """Fields of the film over the whole bearing, in the load frame.
+
+    Attributes
+    ----------
+    theta : (n,) array
+        Cell centres [rad], ascending within one turn from the film's first cell (they may pass
+        2 pi); from the load line in the direction of rotation.
+    y : (m,) array
+        Cell centres [m], -L/2 to L/2.
+    z : (k,) array
+        Cell centres across the film, 0 (bush) to 1 (journal).
+    film_thickness : (n, m) array
+        [m]
+    pressure : (n, m) array
+        Gauge [Pa].
+    liquid_fraction : (n, m) array
+        1 in the full film, below 1 where it is ruptured.
+    temperature : (n, m, k) array
+        [K]
+    viscosity : (n, m, k) array
+        [Pa s]
+    bush_temperature : (n, m) array
+        Of the bore [K].
+    shaft_temperature : float
+        Of the journal's surface [K].
+    """
+
+    theta: Array
+    y: Array
+    z: Array
+    film_thickness: Array
+    pressure: Array
+    liquid_fraction: Array
+    temperature: Array
+    viscosity: Array
+    bush_temperature: Array
+    shaft_temperature: float
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """Where the friction's power goes [W]; `imbalance` is the relative remainder."""
+
+    dissipation: float
+    enthalpy_out: float
+    to_bush: float
+    to_shaft: float
+
+    @property
+    def imbalance(self) -> float:
+        """(dissipation - enthalpy - bush - shaft)/dissipation [-]."""
+        rest = self.dissipation - self.enthalpy_out - self.to_bush - self.to_shaft
+        return rest / self.dissipation if self.dissipation else 0.0
+
+    @property
+    def wall_share(self) -> float:
+        """(bush + shaft)/dissipation [-]: what the oil does not carry off."""
+        return (self.to_bush + self.to_shaft) / self.dissipation if self.dissipation else 0.0
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """Static results, coefficients and the rigid rotor's verdict at one speed (SI, load frame).
+
+    Attributes
+    ----------
+    status : SolveStatus
+        Read it first; with anything but ``converged`` the numbers are the last iterate, or NaN.
+    message : str
+        What went wrong and what to try; empty when converged.
+    thermal_model, cavitation : str
+    speed : float
+        [rad/s]
+    radial_clearance : float
+        [m]
+    eccentricity_ratio : float
+    attitude_angle : float
+        From the load line to the journal's centre, in the direction of rotation [rad].
+    load : float
+        Magnitude [N].
+    sommerfeld_number : float
+        S = mu N L D (R/c)^2/W, N in rev/s, mu at supply temperature.
+    max_pressure : float
+        Gauge [Pa].
+    max_temperature, mean_temperature : float
+        Of the film [K].
+    friction_force : float
+        On the shaft [N].
+    power_loss : float
+        [W]
+    side_flow : float
+        Out of both ends [m3/s].
+    min_film_thickness : float
+        [m]
+    stiffness, damping : (2, 2) arrays
+        K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F on the journal, load frame.
+    critical_mass : float or None
+        Per bearing [kg].
+    critical_mass_dimensionless : float or None
+        M c omega^2/W.
+    whirl_frequency_ratio : float or None
+    stability : Stability
+    iterations : int
+    residual : float
+        Last change of log viscosity (THD), or relative force residual.
+    warnings : tuple of str
+        Where the model leaves its range.
+    heat_balance : HeatBalance or None
+        THD only.
+    outlet_temperature : float or None
+        Mean of the oil that leaves at both ends [K]: supply temperature plus the heat that the oil
+        carries off over rho c_p times the side flow. THD with ``inlet = mixing`` only: otherwise
+        warm oil also leaves where fresh oil replaces it.
+    fields : FilmFields or None
+    """
+
+    status: SolveStatus
+    message: str
+    thermal_model: str
+    cavitation: str
+    speed: float
+    radial_clearance: float
+    eccentricity_ratio: float
+    attitude_angle: float
+    load: float
+    sommerfeld_number: float
+    max_pressure: float
+    max_temperature: float
+    mean_temperature: float
+    friction_force: float
+    power_loss: float
+    side_flow: float
+    min_film_thickness: float
+    stiffness: Array
+    damping: Array
+    critical_mass: float | None
+    critical_mass_dimensionless: float | None
+    whirl_frequency_ratio: float | None
+    stability: Stability | None
+    iterations: int
+    residual: float
+    warnings: tuple[str, ...] = ()
+    heat_balance: HeatBalance | None = None
+    outlet_temperature: float | None = None
+    fields: FilmFields | None = field(default=None, repr=False)
+
+    @property
+    def converged(self) -> bool:
+        """Whether the numbers may be used."""
+        return self.status is SolveStatus.CONVERGED
+
+    def _repr_html_(self) -> str:
+        from ..display import as_html
+
+        return as_html(self)
+
+
+def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
+    """Every scalar and coefficient of `point` (SI); the fields are left out.
+
+    Returns
+    -------
+    dict
+        Keys are the attribute names of `OperatingPoint`; enumerations as their values, arrays as
+        nested lists.
+    """
+    record: dict[str, Any] = {}
+    for entry in dataclasses.fields(point):
+        if entry.name == "fields":
+            continue
+        value = getattr(point, entry.name)
+        if entry.name == "heat_balance" and value is not None:
+            value = dataclasses.asdict(value)
+        record[entry.name] = plain(value)
+    return record
+
+
+def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
+    """Inverse of `point_to_dict`.
+
+    Raises
+    ------
+    KeyError, TypeError, ValueError
+        If `record` was not made by `point_to_dict`.
+    """
+    values = dict(record)
+    values["status"] = SolveStatus(values["status"])
+    values["stability"] = None if values["stability"] is None else Stability(values["stability"])
+    for name in ("stiffness", "damping"):
+        values[name] = np.array(values[name], dtype=float).reshape(2, 2)
+    values["warnings"] = tuple(values["warnings"])
+    if values["heat_balance"] is not None:
+        values["heat_balance"] = HeatBalance(**values["heat_balance"])
+    return OperatingPoint(**values)
+
+
+def failed_point(
+    case: Case, speed: float, message: str, status: SolveStatus = SolveStatus.FAILED
+) -> OperatingPoint:
+    """Point without numbers: all that the case does not give is NaN."""
+    nan, target = math.nan, case.target
+    given = target.eccentricity_ratio if isinstance(target, EccentricityTarget) else nan
+    return OperatingPoint(
+        status=status,
+        message=message,
+        thermal_model=case.thermal.model.value,
+        cavitation=case.film.cavitation.value,
+        speed=speed,
+        radial_clearance=case.bearing.radial_clearance,
+        eccentricity_ratio=given,
+        attitude_angle=nan,
+        load=target.load if isinstance(target, LoadTarget) else nan,
+        sommerfeld_number=nan,
+        max_pressure=nan,
+        max_temperature=nan,
+        mean_temperature=nan,
+        friction_force=nan,
+        power_loss=nan,
+        side_flow=nan,
+        min_film_thickness=nan,
+        stiffness=np.full((2, 2), nan),
+        damping=np.full((2, 2), nan),
+        critical_mass=None,
+        critical_mass_dimensionless=None,
+        whirl_frequency_ratio=None,
+        stability=None,
+        iterations=0,
+        residual=nan,
+    )
+
+
+def plain(value: Any) -> Any:
+    """`value` made of what JSON knows: numpy, enumerations, paths and tuples are converted."""
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, Mapping):
+        return {str(plain(key)): plain(entry) for key, entry in value.items()}
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, complex):
+        return [plain(value.real), plain(value.imag)]
+    if isinstance(value, (list, tuple)):
+        return [plain(entry) for entry in value]
+    return str(value) if isinstance(value, Path) else value
+
+
+def strict_json(value: Any, *, indent: int | None = 2) -> str:
+    """JSON text of `value`; numbers that JSON cannot hold (NaN, infinities) become null.
+
+    Examples
+    --------
+    >>> strict_json({"a": (1.5, float("nan"))}, indent=None)
+    '{"a": [1.5, null]}'
+    """
+    return json.dumps(_finite(plain(value)), indent=indent, allow_nan=False, ensure_ascii=False)
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: _finite(entry) for key, entry in value.items()}
+    return [_finite(entry) for entry in value] if isinstance(value, list) else value

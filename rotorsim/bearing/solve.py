@@ -1,0 +1,333 @@
+"""From a case and a speed to an operating point: film, coefficients, verdict, warnings."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arguments import check_number, refuse_path
+from ..errors import InputError
+from ..film.banded import NoFilmError, SingularFilmError
+from ..film.flow import film_flow
+from ..film.following import following_stiffness
+from ..film.heat import heat_totals, wall_temperatures, with_groove_oil
+from ..film.linearized import linearize
+from ..film.losses import friction_force, peak, side_flow
+from ..film.solution import FilmSolution, WarmStart, solve_film
+from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
+from ..status import SolveStatus
+from .checks import regime_warnings
+from .operating_point import FilmFields, HeatBalance, OperatingPoint, failed_point
+from .whirl import rigid_threshold
+
+if TYPE_CHECKING:
+    from ..files.scenario import Scenario
+
+Array = NDArray[np.float64]
+FOLLOWING = ViscosityResponse.FOLLOWING
+PRESSURE_LIMIT = 400e6
+"""[Pa]; a load that needs more than this is out of the model's range."""
+_WITH_NUMBERS = (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED, SolveStatus.OUT_OF_RANGE)
+Choice = TypeVar("Choice")
+
+
+def solve(
+    scenario: Scenario,
+    *,
+    speed: float | None = None,
+    radial_clearance: float | None = None,
+    thermal_model: str | None = None,
+) -> OperatingPoint:
+    """One operating point of a scenario, its fields included.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    speed : float, optional
+        [rad/s]; any positive value. May be omitted if the scenario has one speed only.
+    radial_clearance : float, optional
+        [m]; likewise.
+    thermal_model : str, optional
+        ``isothermal`` or ``thd``; likewise.
+
+    Raises
+    ------
+    InputError
+        Something is left open, not positive, or no number; or `scenario` is a file's name.
+    """
+    refuse_path(scenario)
+    for name, value, unit in (
+        ("speed", speed, "rad/s"),
+        ("radial_clearance", radial_clearance, "m"),
+    ):
+        if value is not None:
+            check_number(value, name, unit)
+    models = tuple(str(m) for m in scenario.thermal_models)
+    case = scenario.case(
+        _only("radial_clearance", radial_clearance, scenario.radial_clearances),
+        ThermalModel(_only("thermal_model", thermal_model, models)),
+    )
+    omega = _only("speed", speed, tuple(float(s) for s in scenario.speeds))
+    return solve_case(case, omega, keep_fields=True)[0]
+
+
+def _only(name: str, value: Choice | None, choices: tuple[Choice, ...]) -> Choice:
+    if value is not None:
+        return value
+    if len(choices) != 1:
+        raise InputError(
+            f"must be given: the scenario leaves the choice between {len(choices)} values",
+            key=name,
+        )
+    return choices[0]
+
+
+def solve_case(
+    case: Case,
+    speed: float,
+    *,
+    initial: WarmStart | None = None,
+    keep_fields: bool = False,
+) -> tuple[OperatingPoint, WarmStart | None]:
+    """Solve `case` at `speed` [rad/s].
+
+    Parameters
+    ----------
+    initial : WarmStart, optional
+        What a neighbouring point returned; a first guess that saves time.
+    keep_fields : bool
+        Keep pressure, temperature and viscosity fields in the result.
+
+    Returns
+    -------
+    OperatingPoint
+        Its `status` says whether the numbers may be used.
+    WarmStart or None
+        For the next speed; None if this point did not converge.
+
+    Raises
+    ------
+    InputError
+        The speed is not positive, or the mesh cannot hold the geometry.
+    """
+    check_number(speed, "speed", "rad/s")
+    if not (math.isfinite(speed) and speed > 0.0):
+        raise InputError("must be above 0 (rad/s)", key="speed", value=speed)
+    try:
+        solution = _solution(case, speed, initial)
+    except NoFilmError as error:
+        return failed_point(case, speed, str(error), SolveStatus.NO_EQUILIBRIUM), None
+    except SingularFilmError as error:
+        return failed_point(case, speed, f"the film's equations cannot be solved: {error}"), None
+    point = operating_point(case, speed, solution, keep_fields=keep_fields)
+    usable = solution.status is SolveStatus.CONVERGED
+    return point, solution.warm_start if usable else None
+
+
+def _solution(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
+    """Solve from the first guess, and without it where that leads nowhere."""
+    if initial is not None:
+        with suppress(NoFilmError, SingularFilmError):
+            solution = solve_film(case, speed, initial=initial)
+            if solution.status is SolveStatus.CONVERGED:
+                return solution
+    return solve_film(case, speed)
+
+
+def operating_point(
+    case: Case, speed: float, solution: FilmSolution, *, keep_fields: bool = False
+) -> OperatingPoint:
+    """Results of a solved film, turned into the load frame."""
+    problem, state = solution.problem, solution.state
+    stiffness, damping = linearize(state.operator, state.solution, problem.mesh.multiplicity)
+    status, message = solution.status, solution.message
+    if solution.thermal is not None and case.film.viscosity_response is FOLLOWING:
+        stiffness, settled = following_stiffness(problem, solution.thermal)
+        if not settled and status is SolveStatus.CONVERGED:
+            status, message = SolveStatus.NOT_CONVERGED, "a displaced film did not converge"
+    turn = _rotation(solution.frame)
+    stiffness, damping = turn @ stiffness @ turn.T, turn @ damping @ turn.T
+    center = turn @ np.array(state.position)
+    load = float(np.hypot(*state.force))
+    clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
+    viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
+    fraction = liquid_fraction(solution)
+    friction = friction_force(problem, state, fraction)
+    hottest, mean = _temperatures(solution, fraction)
+    thinnest = min_film_thickness(solution)
+    numbers: dict[str, float] = {
+        "eccentricity_ratio": float(np.hypot(*center)) / clearance,
+        "attitude_angle": math.atan2(center[1], center[0]),
+        "load": load,
+        "sommerfeld_number": _ratio(
+            viscosity * speed / (2.0 * math.pi) * 2.0 * radius * case.bearing.length
+            * (radius / clearance) ** 2, load,
+        ),
+        "max_pressure": peak(state.solution.pressure, problem.mesh.half),
+        "max_temperature": hottest,
+        "mean_temperature": mean,
+        "friction_force": friction,
+        "power_loss": friction * speed * radius,
+        "side_flow": side_flow(problem, state),
+        "min_film_thickness": thinnest,
+    }  # fmt: skip
+    if status is SolveStatus.CONVERGED and isinstance(case.target, LoadTarget):
+        status, message = _within_pressure(numbers["max_pressure"])
+    finite = (
+        all(math.isfinite(v) for k, v in numbers.items() if k != "sommerfeld_number")
+        and np.isfinite(stiffness).all()
+    )
+    threshold = None
+    if finite and status in _WITH_NUMBERS:
+        threshold = rigid_threshold(
+            stiffness, damping, speed, load=load, radial_clearance=clearance
+        )
+    elif not finite and status in _WITH_NUMBERS:
+        status, message = SolveStatus.FAILED, message or "the solution is not finite"
+    mean_viscosity = float(case.lubricant.viscosity(mean)) if math.isfinite(mean) else None
+    heat = _heat_balance(solution)
+    return OperatingPoint(
+        status=status,
+        message=message,
+        thermal_model=str(case.thermal.model),
+        cavitation=str(case.film.cavitation),
+        speed=speed,
+        radial_clearance=clearance,
+        **numbers,
+        stiffness=stiffness,
+        damping=damping,
+        critical_mass=threshold.critical_mass if threshold else None,
+        critical_mass_dimensionless=threshold.critical_mass_dimensionless if threshold else None,
+        whirl_frequency_ratio=threshold.whirl_frequency_ratio if threshold else None,
+        stability=threshold.stability if threshold else None,
+        iterations=solution.iterations,
+        residual=solution.residual,
+        warnings=regime_warnings(
+            case, speed, min_film_thickness=thinnest, max_temperature=hottest,
+            mean_viscosity=mean_viscosity, heat_balance=heat,
+        ),
+        heat_balance=heat,
+        outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat),
+        fields=_fields(solution, fraction) if keep_fields else None,
+    )  # fmt: skip
+
+
+def _within_pressure(max_pressure: float) -> tuple[SolveStatus, str]:
+    """Whether a rigid bearing and an oil of constant viscosity mean anything at this pressure."""
+    if max_pressure <= PRESSURE_LIMIT:
+        return SolveStatus.CONVERGED, ""
+    return SolveStatus.OUT_OF_RANGE, (
+        f"the load is carried only at {max_pressure / 1e6:.0f} MPa, above "
+        f"{PRESSURE_LIMIT / 1e6:.0f} MPa: bearing and shaft would yield, and the oil thicken; "
+        "reduce the load, or raise speed, viscosity or size"
+    )
+
+
+def min_film_thickness(solution: FilmSolution) -> float:
+    """Smallest film thickness [m], lands only."""
+    bearing, state = solution.problem.bearing, solution.state
+    if bearing.is_plain and bearing.is_symmetric:
+        return bearing.radial_clearance - math.hypot(*state.position)
+    return state.thickness.minimum(~state.operator.fixed)
+
+
+def _rotation(angle: float) -> Array:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]])
+
+
+def _ratio(above: float, below: float) -> float:
+    return above / below if below > 0.0 else math.inf
+
+
+def liquid_fraction(solution: FilmSolution) -> Array:
+    """What the oil fills of each cell, (n, m)."""
+    if solution.thermal is not None:
+        return solution.thermal.energy.flow.liquid_fraction
+    return film_flow(solution.state, solution.problem.surface_speed).liquid_fraction
+
+
+def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float]:
+    """Highest and mean temperature of the film's oil [K]."""
+    state, thermal = solution.state, solution.thermal
+    if thermal is None:
+        supply = solution.problem.thermal.supply_temperature
+        return supply, supply
+    film = ~state.operator.fixed
+    weight = (state.thickness.center * state.operator.area * fraction * film)[:, :, None]
+    temperature = thermal.heat.temperature
+    total = float(np.sum(weight)) * temperature.shape[2]
+    mean = float(np.sum(weight * temperature)) / total if total > 0.0 else math.nan
+    return float(temperature[film].max()), mean
+
+
+def _heat_balance(solution: FilmSolution) -> HeatBalance | None:
+    thermal = solution.thermal
+    if thermal is None:
+        return None
+    problem = solution.problem
+    walls = wall_temperatures(problem.thermal, thermal.heat.bush, thermal.heat.shaft)
+    totals = heat_totals(
+        problem, thermal.energy, thermal.heat.temperature, walls,
+        thermal.inlet_temperature, thermal.leaving_temperature,
+    )  # fmt: skip
+    return HeatBalance(totals.dissipation, totals.enthalpy_out, totals.to_bush, totals.to_shaft)
+
+
+def _outlet_temperature(case: Case, flow: float, heat: HeatBalance | None) -> float | None:
+    """Mean temperature of the oil that leaves at both ends [K]; None where it is not known.
+
+    All heat that the oil carries off leaves with the side flow only where the oil that comes round
+    mixes, whole, with what is supplied, and at one temperature.
+    """
+    thermal, oil = case.thermal, case.lubricant
+    mixed = thermal.inlet is InletModel.MIXING and thermal.hot_oil_carry_over == 1.0
+    kept = case.film.cavitation in (Cavitation.REYNOLDS, Cavitation.JFO)
+    single = all(
+        groove.supply_temperature in (None, thermal.supply_temperature)
+        for groove in case.bearing.grooves
+    )
+    if heat is None or not (mixed and kept and single and flow > 0.0):
+        return None
+    return thermal.supply_temperature + heat.enthalpy_out / (oil.density * oil.specific_heat * flow)
+
+
+def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
+    """Fields over the whole length, angles in the load frame."""
+    problem, state, thermal = solution.problem, solution.state, solution.thermal
+    mesh, supply = problem.mesh, problem.thermal.supply_temperature
+    layers = problem.settings.mesh.cross_film
+    shape = (*mesh.shape, layers)
+    if thermal is None:
+        temperature = np.full(shape, supply)
+        viscosity = np.full(shape, float(problem.lubricant.viscosity(supply)))
+        bush, shaft = np.full(mesh.shape, supply), supply
+    else:
+        temperature = with_groove_oil(problem, thermal.heat.temperature, thermal.inlet_temperature)
+        viscosity = np.where(
+            (mesh.supply >= 0)[:, :, None],
+            problem.lubricant.viscosity(temperature),
+            thermal.viscosity,
+        )
+        bush, shaft = thermal.heat.bush, thermal.heat.shaft
+
+    whole = mesh.whole
+    return FilmFields(
+        theta=mesh.theta + solution.frame,
+        y=mesh.whole_y,
+        z=(np.arange(layers) + 0.5) / layers,
+        film_thickness=whole(state.thickness.center),
+        pressure=whole(state.solution.pressure),
+        liquid_fraction=whole(fraction),
+        temperature=whole(temperature),
+        viscosity=whole(viscosity),
+        bush_temperature=whole(bush),
+        shaft_temperature=shaft,
+    )
+
+
+__all__ = ["WarmStart", "operating_point", "solve", "solve_case"]

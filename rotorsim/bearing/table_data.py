@@ -1,0 +1,271 @@
+"""From operating points to a dataset, and what every table must satisfy."""
+
+from __future__ import annotations
+
+import datetime
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import TableError
+from ..status import SolveStatus
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from .operating_point import OperatingPoint
+
+
+TABLE_VERSION = 1
+"""Format of the file; raised when older programs could misread it."""
+
+COEFFICIENTS = ("kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")
+
+DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
+
+SIGNS = (
+    "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",
+    "first index: direction of the force, second: direction of the displacement or velocity.",
+)
+CONVENTIONS = (
+    "Frame: x along the static load on the journal, y 90 degrees ahead of x in the direction of",
+    "the shaft's rotation.",
+    *SIGNS,
+)
+"""Lines that every file in the load frame carries."""
+
+ATTRIBUTES: dict[str, tuple[str, str]] = {
+    "thermal_model": ("1", "thermal model of the film"),
+    "radial_clearance": ("m", "radial clearance"),
+    "speed": ("rad s-1", "shaft speed"),
+    **{
+        f"k{i}{j}": ("N m-1", f"stiffness -dF{i}/d{j}, load frame (x along the static load)")
+        for i in "xy"
+        for j in "xy"
+    },
+    **{
+        f"c{i}{j}": ("N s m-1", f"damping -dF{i}/dv{j}, load frame (x along the static load)")
+        for i in "xy"
+        for j in "xy"
+    },
+    "eccentricity_ratio": ("1", "eccentricity over radial clearance"),
+    "attitude_angle": ("rad", "angle from the load line to the journal centre, with rotation"),
+    "load": ("N", "magnitude of the static load"),
+    "sommerfeld_number": ("1", "Sommerfeld number mu N L D (R/c)^2/W"),
+    "max_pressure": ("Pa", "maximum film pressure (gauge)"),
+    "max_temperature": ("K", "maximum film temperature"),
+    "mean_temperature": ("K", "mean film temperature"),
+    "friction_force": ("N", "friction force on the shaft"),
+    "power_loss": ("W", "friction power"),
+    "side_flow": ("m3 s-1", "flow out of both ends"),
+    "min_film_thickness": ("m", "minimum film thickness"),
+    "critical_mass": ("kg", "critical mass per bearing; NaN without a threshold, see stability"),
+    "critical_mass_dimensionless": ("1", "critical mass M c omega^2/W"),
+    "whirl_frequency_ratio": ("1", "whirl frequency at the threshold over shaft frequency"),
+    "residual": ("1", "last change of log viscosity, or relative force residual"),
+    "iterations": ("1", "iterations of the operating point"),
+    "status": ("1", "how the solution ended; numbers count only where it is 'converged'"),
+    "stability": ("1", "verdict on the rigid rotor's critical mass"),
+    "cavitation": ("1", "cavitation model"),
+}
+
+SCALARS = (
+    "eccentricity_ratio",
+    "attitude_angle",
+    "load",
+    "sommerfeld_number",
+    "max_pressure",
+    "max_temperature",
+    "mean_temperature",
+    "friction_force",
+    "power_loss",
+    "side_flow",
+    "min_film_thickness",
+    "critical_mass",
+    "critical_mass_dimensionless",
+    "whirl_frequency_ratio",
+    "residual",
+)
+
+TEXTS = ("status", "stability", "cavitation")
+
+
+def cf_attributes(name: str) -> dict[str, str]:
+    """``units`` and ``long_name`` of a table's variable."""
+    units, long_name = ATTRIBUTES[name]
+    return {"units": units, "long_name": long_name}
+
+
+def from_points(points: Sequence[OperatingPoint], attributes: dict[str, Any]) -> xr.Dataset:
+    """Dataset over thermal model (in order of appearance), clearance and speed (ascending)."""
+    if not points:
+        raise TableError("a table needs at least one operating point", key="points")
+    models = list(dict.fromkeys(str(p.thermal_model) for p in points))
+    clearances = sorted({float(p.radial_clearance) for p in points})
+    speeds = sorted({float(p.speed) for p in points})
+    shape = (len(models), len(clearances), len(speeds))
+    row: dict[tuple[int, int, int], OperatingPoint] = {}
+    places = [{v: i for i, v in enumerate(axis)} for axis in (models, clearances, speeds)]
+    for point in points:
+        key = (str(point.thermal_model), float(point.radial_clearance), float(point.speed))
+        index = (places[0][key[0]], places[1][key[1]], places[2][key[2]])
+        if index in row:
+            raise TableError(f"{_describe(key)} occurs twice", key="points")
+        row[index] = point
+    for index in np.ndindex(shape):
+        if index not in row:
+            key = (models[index[0]], clearances[index[1]], speeds[index[2]])
+            raise TableError(f"{_describe(key)} is missing", key="points")
+    ordered = [row[index] for index in np.ndindex(shape)]
+    columns = _columns(ordered)
+    variables = {name: values.reshape(shape) for name, values in columns.items()}
+    return build(
+        dict(zip(DIMENSIONS, (models, clearances, speeds), strict=True)), variables, attributes
+    )
+
+
+def build(
+    coordinates: dict[str, Any],
+    variables: dict[str, np.ndarray],
+    attributes: dict[str, Any],
+    like: xr.Dataset | None = None,
+) -> xr.Dataset:
+    """Dataset with CF attributes from coordinates (in order) and arrays over all of them.
+
+    Dimensions made by `stack` have the attributes that they have in `like`.
+    """
+    import xarray as xr
+
+    def attributes_of(name: str) -> dict[str, str]:
+        if name not in ATTRIBUTES and like is not None:
+            return dict(like[name].attrs)
+        return cf_attributes(name)
+
+    dimensions = tuple(coordinates)
+    coords = {
+        name: (
+            name,
+            _text(values) if name == "thermal_model" else np.asarray(values, dtype=float),
+            attributes_of(name),
+        )
+        for name, values in coordinates.items()
+    }
+    data = {name: (dimensions, values, cf_attributes(name)) for name, values in variables.items()}
+    return xr.Dataset(data, coords, attributes)
+
+
+def _describe(key: tuple[str, float, float]) -> str:
+    return f"the point ({key[0]}, clearance {key[1]:.6g} m, {key[2]:.6g} rad/s)"
+
+
+def _text(values: Sequence[Any]) -> np.ndarray:
+    result = np.empty(len(values), dtype=object)
+    result[:] = [str(v) for v in values]
+    return result
+
+
+def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
+    stiffness = np.array([np.asarray(p.stiffness, dtype=float).ravel() for p in points])
+    damping = np.array([np.asarray(p.damping, dtype=float).ravel() for p in points])
+    values = np.hstack([stiffness, damping])
+    columns: dict[str, np.ndarray] = {name: values[:, i] for i, name in enumerate(COEFFICIENTS)}
+    for name in SCALARS:
+        column = [getattr(p, name) for p in points]
+        columns[name] = np.array([np.nan if v is None else float(v) for v in column])
+    columns["iterations"] = np.array([int(p.iterations) for p in points])
+    for name in TEXTS:
+        column = [getattr(p, name) for p in points]
+        columns[name] = _text(["" if v is None else v for v in column])
+    return columns
+
+
+def stack(
+    datasets: Sequence[xr.Dataset], dimension: str, values: Sequence[float], units: str
+) -> xr.Dataset:
+    """Join datasets along a new dimension, put before the speed."""
+    import xarray as xr
+
+    if len(datasets) != len(values) or not datasets:
+        raise TableError("one value for each table is needed", key=dimension, value=values)
+    if dimension in datasets[0].variables:
+        raise TableError("the name is taken; choose another", key=dimension)
+    if np.any(np.diff(np.asarray(values, dtype=float)) <= 0.0):
+        raise TableError("values must ascend", key=dimension, value=values)
+    axis = xr.Variable(dimension, np.asarray(values, dtype=float), {"units": units})
+    try:
+        joined = xr.concat(
+            datasets,
+            dim=xr.DataArray(axis),
+            join="exact",
+            combine_attrs="drop_conflicts",
+            data_vars="all",
+            coords="minimal",
+            compat="equals",
+        )
+    except ValueError as error:
+        raise TableError(
+            f"the tables do not share their other coordinates ({error})", key=dimension
+        ) from error
+    order = [d for d in joined["kxx"].dims if d not in (dimension, "speed")]
+    return joined.transpose(*order, dimension, "speed")
+
+
+def with_provenance(dataset: xr.Dataset) -> xr.Dataset:
+    """Add what every file states: format, frame, program version, date, scenario digest."""
+    attributes = {
+        key: value if isinstance(value, (str, int, float)) else str(value)
+        for key, value in dataset.attrs.items()
+        if value is not None
+    }
+    attributes.setdefault("Conventions", "CF-1.11")
+    attributes.setdefault("title", "Journal bearing coefficients over speed")
+    attributes.setdefault("rotorsim_version", _program_version())
+    now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    attributes.setdefault("date", now)
+    attributes["rotorsim_table_version"] = TABLE_VERSION
+    attributes["frame"] = " ".join(CONVENTIONS)
+    if "scenario" in attributes:
+        attributes["scenario_sha256"] = scenario_digest(str(attributes["scenario"]))
+    return dataset.assign_attrs(attributes)
+
+
+def _program_version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("rotorsim")
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def check(dataset: xr.Dataset, source: str | Path | None = None) -> None:
+    """Raise `TableError` unless the dataset is a usable table."""
+    missing = [n for n in (*DIMENSIONS, *COEFFICIENTS, "status") if n not in dataset.variables]
+    if missing:
+        raise TableError(f"variables are missing: {', '.join(missing)}", source=source)
+    dims = dataset["kxx"].dims
+    if not set(DIMENSIONS) <= set(dims) or dims[-1] != "speed":
+        raise TableError(
+            f"dimensions must be thermal_model, radial_clearance and, last, speed, not {dims}",
+            source=source,
+        )
+    if any(dataset[name].dims != dims for name in (*COEFFICIENTS, "status")):
+        raise TableError("kxx ... cyy and status must share their dimensions", source=source)
+    speed = np.asarray(dataset["speed"].values, dtype=float)
+    if not speed.size or not np.all(np.isfinite(speed)) or np.any(np.diff(speed) <= 0.0):
+        raise TableError("speeds must be finite and ascend", source=source, key="speed")
+    converged = np.asarray(dataset["status"].values == str(SolveStatus.CONVERGED))
+    for name in COEFFICIENTS:
+        bad = converged & ~np.isfinite(dataset[name].values)
+        if bad.any():
+            place = np.argwhere(bad)[0]
+            at = ", ".join(f"{d}={dataset[d].values[i]}" for d, i in zip(dims, place, strict=True))
+            raise TableError(f"not a number at a converged point ({at})", source=source, key=name)
+
+
+def scenario_digest(text: str) -> str:
+    """SHA-256 of a scenario's text (UTF-8), hexadecimal."""
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -1,0 +1,1 @@
+"""Files from and for elsewhere: scenarios, and bearings and tables of other programs."""

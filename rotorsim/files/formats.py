@@ -1,0 +1,168 @@
+"""Which formats there are, and from a file's name to its reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ..atomic import write_text
+from ..bearing.table import CoefficientTable
+from ..bearing.table_data import COEFFICIENTS, CONVENTIONS
+from ..errors import TableError
+from ..file_kinds import SUFFIXES, FileKind, kind_of, sentence
+from . import matlab, ross
+from .curves import RPM, Curve, curves
+
+_WIDTH = 16
+
+
+def _write_text(curve: Curve, path: Path) -> Path:
+    """Write one curve; lines beginning with ``#`` say what the numbers mean."""
+    names = ["rpm", *COEFFICIENTS]
+    units = ["1/min", *["N/m"] * 4, *["N*s/m"] * 4]
+    head = [
+        *(line for fact in curve.facts for line in fact.splitlines()),
+        *CONVENTIONS,
+        "".join(f"{name:>{_WIDTH}}" for name in names)[2:],
+        "".join(f"{unit:>{_WIDTH}}" for unit in units)[2:],
+    ]
+    values = np.column_stack(
+        [curve.speed * RPM, curve.stiffness.reshape(-1, 4), curve.damping.reshape(-1, 4)]
+    )
+    rows = ["".join(f"{value:{_WIDTH}.8e}" for value in row) for row in values]
+    write_text(path, "\n".join([*(f"# {line}" for line in head), *rows]) + "\n")
+    return path
+
+
+FORMATS = {
+    "ross": "ross.toml",
+    "csv": "csv",
+    "mat": "mat",
+    "txt": "txt",
+    "nc": "nc",
+}
+"""Names of the formats, and how their files end."""
+_SUFFIXES = (".nc", ".csv", ".json")
+_LOAD_FRAME_SUFFIXES = (".nc", ".csv")
+_KINDS = {
+    ".nc": (FileKind.NETCDF,),
+    ".csv": (FileKind.CSV,),
+    ".toml": (FileKind.ROSS,),
+    ".json": (FileKind.ROSS, FileKind.JSON),
+}
+_NO_USE = "has no use: this format is in the load frame, only that of ROSS is not"
+_ONE_CURVE: dict[str, Callable[[Curve, Path], Path]] = {"ross": ross.write, "txt": _write_text}
+
+
+def write_table(
+    table: CoefficientTable,
+    kind: str,
+    folder: str | Path,
+    name: str,
+    *,
+    load_direction: float | None = None,
+) -> list[Path]:
+    """Write a table in one format.
+
+    Parameters
+    ----------
+    table : CoefficientTable
+    kind : str
+        One of `FORMATS`. ``ross`` and ``txt`` hold one bearing in a file: a table of several
+        thermal models or clearances gives several files.
+    folder : str or Path
+        Made if it is missing.
+    name : str
+        Of the files, without suffix.
+    load_direction : float, optional
+        For ``ross``: where the static load points in the frame of ROSS [rad], from x towards y
+        (with the rotation); by default along -y, the weight. The other formats are in the load
+        frame.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    TableError
+        No such format, nothing in the table converged, a CSV of a table with further dimensions,
+        or a `load_direction` for another format than ``ross``.
+    """
+    if kind not in FORMATS:
+        raise TableError(f"must be one of {', '.join(FORMATS)}", key="format", value=kind)
+    if load_direction is not None and kind != "ross":
+        raise TableError(_NO_USE, key="load_direction", value=load_direction)
+    where = Path(folder)
+    where.mkdir(parents=True, exist_ok=True)
+    if kind in _ONE_CURVE:
+        write = _ONE_CURVE[kind]
+        if load_direction is not None:
+            write = partial(ross.write, load_direction=load_direction)
+        return [
+            write(curve, where / f"{'_'.join(filter(None, (name, curve.name)))}.{FORMATS[kind]}")
+            for curve in curves(table)
+        ]
+    path = where / f"{name}.{FORMATS[kind]}"
+    if kind == "mat":
+        return [matlab.write(table, path)]
+    return [table.to_csv(path) if kind == "csv" else table.save(path)]
+
+
+def is_table(path: str | Path) -> bool:
+    """Whether a file is meant as a table: by its suffix, and a TOML file by its contents."""
+    source = Path(path)
+    suffix = source.suffix.lower()
+    return suffix in _SUFFIXES or (suffix == ".toml" and ross.is_saved_by_ross(source))
+
+
+def read_table(path: str | Path, *, load_direction: float | None = None) -> CoefficientTable:
+    """Read a table from netCDF (``.nc``), CSV (``.csv``) or a bearing saved by ROSS.
+
+    Parameters
+    ----------
+    path : str or Path
+    load_direction : float, optional
+        For a bearing saved by ROSS: where the static load points in its frame [rad], from x
+        towards y. By default what the file says ([rotorsim] load_direction, as `write_table`
+        writes it), and if it says nothing along -y, the weight.
+
+    Raises
+    ------
+    TableError
+        No such file, not readable as what its name says, or a `load_direction` for a table in the
+        load frame or against what the file says.
+    """
+    source = Path(path)
+    suffix = source.suffix.lower()
+    if not source.exists():
+        raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)
+    if source.is_dir():
+        raise TableError("is a directory; give a table", source=source)
+    _check_kind(source, suffix)
+    if load_direction is not None and suffix in _LOAD_FRAME_SUFFIXES:
+        raise TableError(_NO_USE, source=source, key="load_direction", value=load_direction)
+    if suffix == ".nc":
+        return CoefficientTable.load(source)
+    if suffix == ".csv":
+        return CoefficientTable.from_csv(source)
+    if suffix in (".toml", ".json"):
+        return ross.read(source, load_direction)
+    raise TableError(
+        "a table's name ends in .nc (netCDF), .csv, or .toml or .json (ROSS)", source=source
+    )
+
+
+def _check_kind(source: Path, suffix: str) -> None:
+    """Refuse a file whose contents, or name, are not those of a table."""
+    kind = kind_of(source)
+    if kind is None or kind in _KINDS.get(suffix, ()):
+        return
+    renamed = (
+        "" if suffix == SUFFIXES.get(kind, suffix) else f"; its name must end in {SUFFIXES[kind]}"
+    )
+    raise TableError(f"{sentence(kind)}{renamed}; here a table is needed", source=source)

@@ -1,0 +1,222 @@
+"""The bearing's geometry: arcs, grooves and what they must be to each other."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from ...errors import InputError
+from ...model import Arc, Bearing, Groove, MeshSize
+from ...model.bearing import FULL_TURN
+from .schema import BearingTable
+from .settings import BearingProfile
+
+TOLERANCE = 1e-9
+"""Angle below which two edges are taken for one [rad]."""
+LEAST_CELLS = 2
+"""Cells that a groove, or the land between two, must at least have."""
+
+
+def profile_arcs(profile: BearingProfile, preload: float, offset: float | None) -> tuple[Arc, ...]:
+    """Arcs of a usual bore, angles from the load line.
+
+    Two lobes are centred on the load line and opposite it, the split at 90 and 270 deg; three lobes
+    with the first centred on the load line. `offset` is 0.5, for offset halves 1.0: each half
+    comes nearest where it ends, in the direction of rotation.
+    """
+    lobes = 3 if profile is BearingProfile.THREE_LOBE else 2
+    usual = 1.0 if profile is BearingProfile.OFFSET_HALVES else 0.5
+    span = FULL_TURN / lobes
+    return tuple(
+        Arc(
+            start=(lobe - 0.5) * span,
+            end=(lobe + 0.5) * span,
+            preload=preload,
+            offset=usual if offset is None else offset,
+        )
+        for lobe in range(lobes)
+    )
+
+
+def bearing_arcs(table: BearingTable) -> tuple[Arc, ...]:
+    """Arcs as listed, or of the profile; none for a plain bore."""
+    if table.profile is None:
+        for name in ("preload", "offset"):
+            if getattr(table, name) is not None:
+                raise InputError(
+                    'goes with bearing.profile; add profile = "elliptical", or give it to '
+                    "each [[bearing.arc]]",
+                    key=f"bearing.{name}",
+                )
+        arcs = []
+        for index, arc in enumerate(table.arc):
+            try:
+                arcs.append(Arc(arc.start, arc.end, arc.preload, arc.offset))
+            except InputError as error:
+                name = (error.key or "arc").removeprefix("arc")
+                raise InputError(error.message, key=f"bearing.arc[{index}]{name}") from None
+        return tuple(arcs)
+    if table.arc:
+        raise InputError(
+            "either a profile or [[bearing.arc]] tables, not both", key="bearing.profile"
+        )
+    if table.preload is None:
+        raise InputError(
+            "is missing; a profile needs it, for example preload = 0.5", key="bearing.preload"
+        )
+    return profile_arcs(table.profile, table.preload, table.offset)
+
+
+def bearing_grooves(table: BearingTable) -> tuple[Groove, ...]:
+    """Grooves as listed."""
+    grooves = []
+    for index, entry in enumerate(table.groove):
+        key = f"bearing.groove[{index}]"
+        if entry.length is not None and entry.length > table.length * (1.0 + 1e-12):
+            raise InputError(
+                f"must not be longer than the bearing ({table.length * 1e3:g} mm)",
+                key=f"{key}.length",
+            )
+        try:
+            grooves.append(
+                Groove(
+                    entry.center,
+                    entry.extent,
+                    entry.length,
+                    entry.supply_pressure,
+                    entry.supply_temperature,
+                )
+            )
+        except InputError as error:
+            name = (error.key or "groove").removeprefix("groove")
+            raise InputError(error.message, key=key + name) from None
+    return tuple(grooves)
+
+
+def check_grooves(bearing: Bearing, mesh: MeshSize) -> None:
+    """Grooves apart from each other, film between them, cells enough for both."""
+    cell = FULL_TURN / mesh.circumferential
+    covered = sum(groove.extent for groove in bearing.grooves)
+    if covered >= FULL_TURN - LEAST_CELLS * cell:
+        raise InputError(
+            f"leave no film: together they cover {math.degrees(covered):.4g} deg of 360 deg; "
+            "make them smaller or fewer",
+            key="bearing.groove",
+        )
+    for index, groove in enumerate(bearing.grooves):
+        key = f"bearing.groove[{index}]"
+        _check_cells(groove.extent, mesh, f"{key}.extent", "groove")
+        least = LEAST_CELLS * bearing.length / mesh.axial
+        if groove.length is not None and groove.length < least * (1.0 - TOLERANCE):
+            needed = 2 * math.ceil(LEAST_CELLS * bearing.length / groove.length / 2.0)
+            raise InputError(
+                f"the mesh is too coarse for this groove: film.mesh.axial must be {needed} or "
+                f"more, or the groove at least {least * 1e3:.4g} mm long",
+                key=f"{key}.length",
+            )
+    order = sorted(range(len(bearing.grooves)), key=lambda i: bearing.grooves[i].center % FULL_TURN)
+    for here, there in pairwise([*order, order[0]] if len(order) > 1 else []):
+        _check_land(bearing, here, there, mesh)
+
+
+def _check_land(bearing: Bearing, here: int, there: int, mesh: MeshSize) -> None:
+    first, second = bearing.grooves[here], bearing.grooves[there]
+    ahead = (second.center - first.center) % FULL_TURN
+    land = ahead - 0.5 * (first.extent + second.extent)
+    key = f"bearing.groove[{max(here, there)}].center"
+    if land < -TOLERANCE:
+        raise InputError(
+            f"overlaps bearing.groove[{min(here, there)}] by {-math.degrees(land):.4g} deg; "
+            "move them apart or make them smaller",
+            key=key,
+        )
+    _check_cells(land, mesh, key, f"land next to bearing.groove[{min(here, there)}]")
+
+
+def _check_cells(extent: float, mesh: MeshSize, key: str, name: str) -> None:
+    cells = extent * mesh.circumferential / FULL_TURN
+    if cells < LEAST_CELLS - TOLERANCE:
+        needed = math.ceil(LEAST_CELLS * FULL_TURN / extent) if extent > TOLERANCE else 0
+        cure = f"film.mesh.circumferential must be {needed} or more" if 0 < needed <= 4096 else ""
+        raise InputError(
+            f"the mesh is too coarse for this {name} ({math.degrees(extent):.4g} deg, "
+            f"{cells:.2g} cells; at least {LEAST_CELLS} are needed)"
+            + (f": {cure}" if cure else ": make it larger"),
+            key=key,
+        )
+
+
+def check_arcs(bearing: Bearing) -> None:
+    """Arcs must not overlap, and only a groove may stand between two of them."""
+    if not bearing.arcs:
+        return
+    order = sorted(range(len(bearing.arcs)), key=lambda i: bearing.arcs[i].start % FULL_TURN)
+    for here, there in pairwise([*order, order[0]]):
+        first, second = bearing.arcs[here], bearing.arcs[there]
+        to_next = (second.start - first.start) % FULL_TURN
+        if to_next < TOLERANCE or to_next > FULL_TURN - TOLERANCE:
+            to_next = FULL_TURN if here == there else 0.0
+        gap = to_next - (first.end - first.start)
+        key = f"bearing.arc[{here}].end"
+        if gap < -TOLERANCE:
+            raise InputError(
+                f"overlaps bearing.arc[{there}] by {-math.degrees(gap):.4g} deg; end the one "
+                "where the other starts",
+                key=key,
+            )
+        if gap > TOLERANCE and not _in_groove(bearing, first.end, gap):
+            raise InputError(
+                f"the bore is open for {math.degrees(gap):.4g} deg after this arc; let the next "
+                "arc start here, or put a groove over the opening",
+                key=key,
+            )
+
+
+def _in_groove(bearing: Bearing, start: float, extent: float) -> bool:
+    """Whether one full-length groove covers the opening."""
+    for groove in bearing.grooves:
+        if not bearing.spans_length(groove):
+            continue
+        from_edge = (start - (groove.center - 0.5 * groove.extent) + TOLERANCE) % FULL_TURN
+        if from_edge + extent <= groove.extent + 2.0 * TOLERANCE:
+            return True
+    return False
+
+
+def check_tilt(bearing: Bearing, eccentricity_ratio: float | None) -> None:
+    """Refuse a misalignment with which the journal touches the bore at one end for certain."""
+    at_end = math.hypot(*bearing.tilt) * 0.5 * bearing.length / bearing.radial_clearance
+    if math.hypot(at_end, eccentricity_ratio or 0.0) >= 1.0:
+        raise InputError(
+            "the tilted journal touches the bore at the bearing's end: the tilt must stay below "
+            f"{2e3 * bearing.radial_clearance / bearing.length:.4g} mrad, less what the "
+            "eccentricity takes",
+            key="bearing.tilt",
+        )
+
+
+def reach(bearing: Bearing) -> float:
+    """Largest eccentricity ratio that any position within the lobes has (1 for a plain bore)."""
+    theta = np.linspace(0.0, FULL_TURN, 720, endpoint=False)
+    bore = np.ones_like(theta)
+    for arc in bearing.arcs:
+        inside = (theta - arc.start) % FULL_TURN < arc.end - arc.start
+        bore = np.where(inside, 1.0 - arc.preload * np.cos(theta - arc.preload_angle), bore)
+    towards = np.cos(theta[:, None] - theta)  # direction of the journal, angle around the bore
+    room = np.where(towards > 0.0, bore / np.where(towards > 0.0, towards, 1.0), np.inf)
+    return float(room.min(axis=1).max())
+
+
+def check_eccentricity(bearing: Bearing, eccentricity_ratio: float | None) -> None:
+    """Refuse an eccentricity ratio at which the journal touches a lobe wherever it stands."""
+    if eccentricity_ratio is None or all(arc.preload == 0.0 for arc in bearing.arcs):
+        return
+    limit = reach(bearing)
+    if eccentricity_ratio >= limit:
+        raise InputError(
+            "the journal touches a lobe in every direction: with these lobes it must be below "
+            f"{limit:.4g} (it counts in lobe clearances)",
+            key="operating.eccentricity_ratio",
+        )

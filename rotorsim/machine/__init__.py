@@ -1,0 +1,1 @@
+"""Rotors on their bearings: thresholds, modes, stability maps, state space and control."""

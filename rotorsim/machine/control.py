@@ -1,0 +1,351 @@
+"""Response and control of a rotor on its film: receptance, locus, margins, LQR and PD."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import control
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..bearing.interpolation import Coefficients
+from ..bearing.table import CoefficientTable
+from ..errors import InputError
+from .matrices import state_matrix
+from .modes import Branches, track_modes
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_NO_GAIN = 1e9
+"""Factors of a loop gain above this are no factors any more."""
+_MOST_STATES = 12
+"""Margins come from polynomials, whose coefficients overflow beyond."""
+
+
+def receptance(system: control.StateSpace, frequency: ArrayLike) -> ComplexArray:
+    """Displacement per force, shape (n_output, n_input, n_frequency) [m/N].
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        From `state_space` and its like.
+    frequency : (n,) array
+        [rad/s]
+    """
+    omega = np.atleast_1d(np.asarray(frequency, dtype=float))
+    response = np.asarray(system(1j * omega, squeeze=False))
+    return response.astype(complex)
+
+
+def unbalance_response(
+    table: CoefficientTable,
+    mass: float,
+    unbalance: float,
+    speed: ArrayLike | None = None,
+    **choices: object,
+) -> ComplexArray:
+    """Complex amplitudes (n, 2) of x and y [m] of the rigid rotor, x = Re(X exp(i omega t)).
+
+    Parameters
+    ----------
+    table : CoefficientTable
+    mass, unbalance : float
+        Per bearing [kg], [kg m].
+    speed : (n,) array, optional
+        [rad/s]; the tabulated ones by default.
+    **choices
+        As for `CoefficientTable.select`.
+
+    Notes
+    -----
+    (K + i omega C - m omega^2) X = u omega^2 (1, -i): the force turns from x to y.
+    """
+    omega = np.atleast_1d(np.asarray(table.speeds if speed is None else speed, dtype=float))
+    stiffness, damping = table.interpolator(**choices)(omega)
+    w = omega[:, None, None]
+    dynamic = stiffness + 1j * w * damping - mass * w**2 * np.eye(2)
+    force = unbalance * omega[:, None] ** 2 * np.array([1.0, -1.0j])
+    return np.asarray(np.linalg.solve(dynamic, force[..., None])[..., 0], dtype=complex)
+
+
+def step_response(
+    system: control.StateSpace, force: float, entry: int = 0, duration: float | None = None
+) -> tuple[Array, Array]:
+    """Times [s] and displacements (n_output, n) [m] after a force [N] sets in at one input."""
+    response = control.step_response(system, T=duration, input=entry, squeeze=False)
+    return np.asarray(response.time), force * np.asarray(response.outputs)[:, 0, :]
+
+
+def locus_over_mass(coefficients: Coefficients, masses: ArrayLike) -> Branches:
+    """Eigenvalue branches over the mass per bearing [kg]; `Branches.parameter` is the mass."""
+    k, c = coefficients.stiffness, coefficients.damping
+    return track_modes(lambda m: state_matrix(k, c, m), masses)
+
+
+def locus_over_damping(coefficients: Coefficients, mass: float, added: ArrayLike) -> Branches:
+    """Eigenvalue branches over isotropic damping added at the journal [N s/m]."""
+    k, c = coefficients.stiffness, coefficients.damping
+    return track_modes(lambda d: state_matrix(k, c + d * np.eye(2), mass), added)
+
+
+@dataclass(frozen=True, eq=False)
+class StateFeedback:
+    """Actuator force from the rotor's state, F = -gain state, limited per axis.
+
+    Attributes
+    ----------
+    gain : (m, n) array
+        [N/m] for the displacements, [N s/m] for the velocities. For a rigid rotor (2, 4), on
+        x, y, vx, vy; what acts in time (`ActuatedForce`) is of this kind.
+    max_force : float
+        Saturation of each axis [N].
+    """
+
+    gain: Array
+    max_force: float = np.inf
+
+    def __post_init__(self) -> None:
+        gain = np.array(self.gain, dtype=float)
+        if gain.ndim != 2 or not 0 < gain.shape[0] < gain.shape[1] or not np.all(np.isfinite(gain)):
+            raise InputError(
+                "must be a matrix of finite numbers, forces by states (2 x 4 for a rigid rotor)",
+                key="gain", value=gain,
+            )  # fmt: skip
+        if not self.max_force > 0.0:
+            raise InputError("must be above 0 (N)", key="max_force", value=self.max_force)
+        object.__setattr__(self, "gain", gain)
+
+    def __call__(self, state: ArrayLike) -> Array:
+        """Force [N] (..., m) at state (..., n), about the operating point."""
+        force = -np.asarray(state, dtype=float) @ self.gain.T
+        return np.clip(force, -self.max_force, self.max_force)
+
+    def closed_loop(self, system: control.StateSpace) -> control.StateSpace:
+        """Rotor with the unsaturated loop closed, same signals."""
+        _check_sizes(system, self.gain)
+        return control.StateSpace(
+            system.A - system.B @ self.gain, system.B, system.C, system.D,
+            states=system.state_labels,
+            inputs=system.input_labels,
+            outputs=system.output_labels,
+            name=f"{system.name}_closed",
+        )  # fmt: skip
+
+
+def design_lqr(
+    system: control.StateSpace,
+    displacement_scale: float,
+    force_scale: float,
+    velocity_scale: float = np.inf,
+    max_force: float = np.inf,
+) -> StateFeedback:
+    """Linear-quadratic regulator weighted by what counts as large (Bryson's rule).
+
+    Parameters
+    ----------
+    system : control.StateSpace
+        Its inputs are the actuator's forces, its outputs the displacements to be kept small: the
+        rigid rotor of `state_space`, or some nodes of another rotor, for example
+        ``rotor_state_space(...)[["displacement_4", "displacement_5"], ["force_4", "force_5"]]``.
+    displacement_scale, velocity_scale, force_scale : float
+        Acceptable displacement [m], velocity [m/s] and force [N].
+    max_force : float
+        Saturation [N].
+
+    Returns
+    -------
+    StateFeedback
+        On all states of `system`: of a rotor with many, an observer has to give them.
+
+    Raises
+    ------
+    InputError
+        A scale is not above zero, every degree of freedom has an actuator, or no such regulator
+        exists (these forces do not reach an unstable mode, or these outputs do not show it).
+    """
+    for key, value in (
+        ("displacement_scale", displacement_scale),
+        ("velocity_scale", velocity_scale),
+        ("force_scale", force_scale),
+    ):
+        if not value > 0.0:
+            raise InputError("must be above 0", key=key, value=value)
+    if (system.nstates, system.ninputs) != (4, 2):
+        return _design_lqr_of_outputs(
+            system, displacement_scale, force_scale, velocity_scale, max_force
+        )
+    # In units of the scales, so that the Riccati equation is well conditioned.
+    a, b = np.asarray(system.A), np.asarray(system.B)
+    time = np.sqrt(np.abs(a[2:, :2]).max())
+    to_scaled = np.diag([1.0, 1.0, 1.0 / time, 1.0 / time]) / displacement_scale
+    from_scaled = np.linalg.inv(to_scaled)
+    velocity = (displacement_scale * time / velocity_scale) ** 2
+    gain, _, _ = control.lqr(
+        to_scaled @ a @ from_scaled / time,
+        to_scaled @ b * force_scale / time,
+        np.diag([1.0, 1.0, velocity, velocity]),
+        np.eye(2),
+    )
+    return StateFeedback(force_scale * np.asarray(gain) @ to_scaled, max_force)
+
+
+def _design_lqr_of_outputs(
+    system: control.StateSpace, displacement: float, force: float, velocity: float, limit: float
+) -> StateFeedback:
+    """Regulator of any rotor, weighted by its outputs and their rates."""
+    a, b, c = (np.asarray(part) for part in (system.A, system.B, system.C))
+    if 2 * system.ninputs >= system.nstates or not system.noutputs:
+        raise InputError(
+            f"has {system.ninputs} inputs and {system.nstates} states: pick the actuator's node, "
+            'for example system[["displacement_4", "displacement_5"], ["force_4", "force_5"]] of '
+            "rotor_state_space",
+            key="system",
+        )
+    weight = c.T @ c / displacement**2
+    if np.isfinite(velocity):
+        if np.any(c @ b != 0.0):
+            raise InputError(
+                "needs outputs that a force does not move at once (no massless journals)",
+                key="velocity_scale", value=velocity,
+            )  # fmt: skip
+        weight = weight + (c @ a).T @ (c @ a) / velocity**2
+    try:
+        gain, _, poles = control.lqr(a, b, weight, np.eye(system.ninputs) / force**2)
+    except (np.linalg.LinAlgError, control.ControlArgument) as error:
+        raise InputError(f"has no such regulator ({error})", key="system") from error
+    if not np.all(np.real(poles) < 0.0):
+        raise InputError("has no such regulator: an unstable mode is out of reach", key="system")
+    return StateFeedback(np.asarray(gain), limit)
+
+
+def _check_sizes(system: control.StateSpace, gain: Array) -> None:
+    """Refuse a feedback that was made for another system."""
+    wanted = (system.ninputs, system.nstates)
+    if gain.shape != wanted:
+        raise InputError(
+            f"must have the system's size, forces by states {wanted}", key="gain", value=gain.shape
+        )
+
+
+def proportional_derivative(
+    stiffness: float, damping: float, max_force: float = np.inf
+) -> StateFeedback:
+    """Decentralised PD: added stiffness [N/m] and damping [N s/m] on both axes."""
+    return StateFeedback(np.hstack([stiffness * np.eye(2), damping * np.eye(2)]), max_force)
+
+
+def design_pd(
+    coefficients: Coefficients,
+    mass: float,
+    decay_rate: float,
+    stiffness: float = 0.0,
+    max_force: float = np.inf,
+) -> StateFeedback:
+    """Least derivative gain with which every eigenvalue has a real part of `decay_rate` or less.
+
+    Parameters
+    ----------
+    coefficients : Coefficients
+    mass : float
+        [kg]
+    decay_rate : float
+        Wanted largest real part, zero or negative [1/s].
+    stiffness : float
+        Proportional gain [N/m].
+    max_force : float
+        [N]
+
+    Raises
+    ------
+    InputError
+        No derivative gain reaches it: more damping makes the slow modes slower still.
+    """
+    if not decay_rate <= 0.0:
+        raise InputError("must be 0 or below (1/s)", key="decay_rate", value=decay_rate)
+    k = coefficients.stiffness + stiffness * np.eye(2)
+
+    def rate(added: float) -> float:
+        a = state_matrix(k, coefficients.damping + added * np.eye(2), mass)
+        return float(np.linalg.eigvals(a).real.max())
+
+    if rate(0.0) <= decay_rate:
+        return proportional_derivative(stiffness, 0.0, max_force)
+    unit = np.sqrt(mass * np.abs(k).max())
+    trials = unit * np.geomspace(1e-6, 1e3, 400)
+    good = np.flatnonzero([rate(d) <= decay_rate for d in trials])
+    if not good.size:
+        best = min(rate(d) for d in trials)
+        raise InputError(
+            f"no derivative gain reaches it; the best largest real part is {best:.4g} 1/s, "
+            "a proportional gain may help",
+            key="decay_rate",
+            value=decay_rate,
+        )
+    high = float(trials[good[0]])
+    low = float(trials[good[0] - 1]) if good[0] else 0.0
+    while high - low > 1e-12 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if rate(middle) <= decay_rate else (middle, high)
+    return proportional_derivative(stiffness, high, max_force)
+
+
+@dataclass(frozen=True)
+class LoopMargins:
+    """Margins of one axis' loop, the other axis' loop closed.
+
+    Attributes
+    ----------
+    gain_increase, gain_reduction : float
+        Factors (above 1 and below 1) by which the loop gain may change before it becomes unstable;
+        infinity and 0 where it never does.
+    phase_margin : float
+        Least phase change that makes it unstable [rad]; infinity without a gain crossover.
+    modulus_margin : float
+        Least distance of the open loop's Nyquist curve from -1.
+    stable : bool
+        Of the closed loop; margins of an unstable loop say how far it is from being stable.
+    """
+
+    gain_increase: float
+    gain_reduction: float
+    phase_margin: float
+    modulus_margin: float
+    stable: bool
+
+
+def loop_margins(system: control.StateSpace, feedback: StateFeedback, axis: int) -> LoopMargins:
+    """Gain, phase and modulus margins of the loop at one input, `axis` (0: x, 1: y)."""
+    _check_sizes(system, feedback.gain)
+    if axis not in range(system.ninputs):
+        known = "0 (x) or 1 (y)" if system.ninputs == 2 else f"from 0 to {system.ninputs - 1}"
+        raise InputError(f"must be {known}", key="axis", value=axis)
+    if system.nstates > _MOST_STATES:
+        raise InputError(
+            f"has {system.nstates} states, margins are found for at most {_MOST_STATES}: reduce it "
+            "(control.balanced_reduction), or look at the closed loop's poles",
+            key="system",
+        )
+    other = np.array(feedback.gain)
+    other[axis] = 0.0
+    loop = control.StateSpace(
+        system.A - system.B @ other,
+        np.asarray(system.B)[:, [axis]],
+        feedback.gain[[axis]],
+        np.zeros((1, 1)),
+    )
+    gains, phases, distances, *_ = control.stability_margins(loop, returnall=True)
+    gains = np.atleast_1d(np.asarray(gains, dtype=float))
+    phases = np.atleast_1d(np.asarray(phases, dtype=float))
+    distances = np.atleast_1d(np.asarray(distances, dtype=float))
+    # A crossing at an infinite gain comes out as a very large one.
+    above = gains[(gains > 1.0) & (gains < _NO_GAIN)]
+    below = gains[(gains > 1.0 / _NO_GAIN) & (gains < 1.0)]
+    closed = system.A - system.B @ feedback.gain
+    return LoopMargins(
+        gain_increase=float(above.min()) if above.size else np.inf,
+        gain_reduction=float(below.max()) if below.size else 0.0,
+        phase_margin=float(np.deg2rad(np.abs(phases).min())) if phases.size else np.inf,
+        modulus_margin=float(distances.min()) if distances.size else 1.0,
+        stable=bool(np.linalg.eigvals(closed).real.max() < 0.0),
+    )

@@ -1,0 +1,209 @@
+"""Stability maps: verdict and decay rate over everything in a table, times mass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..bearing.table import CoefficientTable
+from ..bearing.whirl import rigid_thresholds, routh_coefficients
+from ..errors import InputError
+from .rates import decay_rate_map
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+UNKNOWN, UNSTABLE, STABLE = -1, 0, 1
+"""Values of a map's ``verdict``; unknown where the table has no converged coefficients."""
+
+
+@dataclass(frozen=True, eq=False)
+class StabilityMap:
+    """Verdicts of the rigid rotor over the table's dimensions and mass.
+
+    Attributes
+    ----------
+    dataset : xarray.Dataset
+        Over the table's dimensions and ``mass``: ``decay_rate`` [1/s] (largest real part of the
+        eigenvalues), ``verdict`` (1 stable, 0 unstable, -1 unknown), ``mass_margin`` (1 - mass
+        over critical mass, NaN without a threshold). Without ``mass``: ``critical_mass`` [kg],
+        ``whirl_frequency_ratio``, ``stability``. Without ``thermal_model``, where the table has
+        both models: ``destabilised_by_heating``, stable isothermally and unstable with THD.
+    """
+
+    dataset: xr.Dataset
+
+    @property
+    def destabilised_by_heating(self) -> xr.DataArray | None:
+        """Where only heating makes the rotor unstable; None unless both models are tabulated."""
+        return self.dataset.get("destabilised_by_heating")
+
+    def plane(self, first: str, second: str, **fixed: object) -> xr.Dataset:
+        """Cut the map to two of its dimensions (and the thermal models).
+
+        Parameters
+        ----------
+        first, second : str
+            Any two of ``speed``, ``mass``, ``radial_clearance`` and the table's further ones.
+        **fixed
+            Where the other dimensions are held; the nearest tabulated value is taken. A dimension
+            with one value need not be named.
+
+        Raises
+        ------
+        InputError
+            A dimension is unknown, or one with several values is not fixed.
+        """
+        dataset = self.dataset
+        for name in (first, second, *fixed):
+            if name not in dataset.sizes:
+                known = ", ".join(str(d) for d in dataset.sizes)
+                raise InputError(f"no such dimension; the map has {known}", key=name)
+        for name in dataset.sizes:
+            if name in (first, second, "thermal_model") and name not in fixed:
+                continue
+            if name not in fixed and dataset.sizes[name] > 1:
+                raise InputError("has several values: say which", key=str(name))
+            if name in fixed:
+                method = None if name == "thermal_model" else "nearest"
+                dataset = dataset.sel({name: fixed[str(name)]}, method=method)
+            else:
+                dataset = dataset.isel({name: 0})
+        return dataset
+
+    def _repr_html_(self) -> str:
+        from ..display import as_html
+
+        return as_html(self)
+
+    def save(self, path: str | Path) -> Path:
+        """Write the map as netCDF 4."""
+        from ..bearing.netcdf import write
+
+        return write(self.dataset, path)
+
+
+def stability_map(
+    table: CoefficientTable, mass: ArrayLike, speed: ArrayLike | None = None
+) -> StabilityMap:
+    """Decay rate and verdict over everything in the table times mass.
+
+    Parameters
+    ----------
+    table : CoefficientTable
+        With any further dimensions (load, supply temperature), which the map keeps.
+    mass : (n_mass,) array
+        Per bearing [kg], ascending.
+    speed : (n_speed,) array, optional
+        [rad/s], ascending; by default the tabulated speeds.
+
+    Raises
+    ------
+    InputError
+        A mass is not above zero, or values do not ascend.
+    OutOfRangeError
+        A speed lies outside the table.
+    """
+    masses = _axis(mass, "mass")
+    speeds = table.speeds if speed is None else _axis(speed, "speed")
+    stiffness, damping, load = _coefficients(table, None if speed is None else speeds)
+    dataset = _dataset(table, speeds, masses, stiffness, damping, load)
+    models = [str(m) for m in table.dataset["thermal_model"].values]
+    if {"isothermal", "thd"} <= set(models):
+        cold, hot = models.index("isothermal"), models.index("thd")
+        verdict = dataset["verdict"]
+        heated = verdict[cold].isin([STABLE]) & verdict[hot].isin([UNSTABLE])
+        heated = heated.drop_vars("thermal_model", errors="ignore")
+        dataset["destabilised_by_heating"] = heated.astype(np.int8)
+        dataset["destabilised_by_heating"].attrs = {
+            "units": "1",
+            "long_name": "stable if heating is neglected, unstable with it",
+            "flag_values": np.array([0, 1], dtype=np.int8),
+            "flag_meanings": "no yes",
+        }
+    return StabilityMap(dataset)
+
+
+def _axis(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    axis = np.atleast_1d(np.asarray(values, dtype=float))
+    if axis.ndim != 1 or not axis.size or not np.all(np.isfinite(axis)) or not np.all(axis > 0.0):
+        raise InputError("must be one or more numbers above 0", key=name, value=values)
+    if np.any(np.diff(axis) <= 0.0):
+        raise InputError("must ascend", key=name, value=values)
+    return axis
+
+
+def _coefficients(
+    table: CoefficientTable, speeds: NDArray[np.float64] | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """K, C (..., n_speed, 2, 2) and load (..., n_speed); NaN where nothing converged."""
+    shape = tuple(table.dataset.sizes[d] for d in table.choices)
+    at = table.speeds if speeds is None else speeds
+    values = np.empty((*shape, at.size, 9))
+    for index in np.ndindex(shape):
+        part = table.dataset.isel(
+            {d: slice(i, i + 1) for d, i in zip(table.choices, index, strict=True)}
+        )
+        values[index] = CoefficientTable(part).interpolator().columns(at, gaps="nan")
+    matrices = (*shape, at.size, 2, 2)
+    return values[..., :4].reshape(matrices), values[..., 4:8].reshape(matrices), values[..., 8]
+
+
+def _dataset(
+    table: CoefficientTable,
+    speeds: NDArray[np.float64],
+    masses: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    load: NDArray[np.float64],
+) -> xr.Dataset:
+    import xarray as xr
+
+    dims = (*table.choices, "speed")
+    clearance = table.dataset["radial_clearance"].values
+    axis = dims.index("radial_clearance")
+    clearance = clearance.reshape([-1 if i == axis else 1 for i in range(len(dims))])
+    found = rigid_thresholds(stiffness, damping, speeds, load=load, radial_clearance=clearance)
+    stable = routh_coefficients(stiffness[..., None, :, :], damping[..., None, :, :]).stable(masses)
+    known = np.asarray(np.isfinite(stiffness).all(axis=(-2, -1)))[..., None]
+    with np.errstate(invalid="ignore"):
+        margin = 1.0 - masses / found.critical_mass[..., None]
+    flags = {"flag_values": np.array([-1, 0, 1], dtype=np.int8)}
+    over_mass = (*dims, "mass")
+    per_point = {
+        "critical_mass": (found.critical_mass, "kg", "critical mass per bearing"),
+        "critical_mass_dimensionless": (
+            found.critical_mass_dimensionless, "1", "critical mass M c omega^2/W",
+        ),
+        "whirl_frequency_ratio": (
+            found.whirl_frequency_ratio, "1", "whirl frequency at the threshold over shaft speed",
+        ),
+        "stability": (found.stability.astype(object), "1", "verdict on the critical mass"),
+    }  # fmt: skip
+    data: dict[str, tuple[tuple[str, ...], NDArray, dict]] = {
+        name: (dims, value, {"units": units, "long_name": text})
+        for name, (value, units, text) in per_point.items()
+    }
+    data["decay_rate"] = (
+        over_mass,
+        decay_rate_map(stiffness, damping, masses),
+        {"units": "s-1", "long_name": "largest real part of the eigenvalues"},
+    )
+    data["verdict"] = (
+        over_mass,
+        np.where(known, stable, UNKNOWN).astype(np.int8),
+        {"units": "1", "long_name": "verdict", **flags, "flag_meanings": "unknown unstable stable"},
+    )
+    data["mass_margin"] = (
+        over_mass,
+        margin,
+        {"units": "1", "long_name": "1 - mass over critical mass"},
+    )
+    coords = {d: table.dataset[d].variable for d in table.choices}
+    coords["speed"] = xr.Variable("speed", speeds, {"units": "rad s-1", "long_name": "shaft speed"})
+    coords["mass"] = xr.Variable("mass", masses, {"units": "kg", "long_name": "mass per bearing"})
+    return xr.Dataset(data, coords, dict(table.dataset.attrs))

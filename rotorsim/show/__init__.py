@@ -1,0 +1,1 @@
+"""What shows results: figures, recordings for the viewer, reports."""

@@ -1,0 +1,290 @@
+"""The main job after the table: stability, orbits, film fields; then everything written."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from ..bearing.drawing import STANDARD_GRAVITY
+from ..errors import InputError, RotorsimError
+from ..files.scenario.settings import OrbitForce, SpeedRamp
+from ..model.rotor import rigid_mass
+from ..study import orbits as orbit_steps
+from ..study.stability import StabilityCurve, rotor_on_film, stability_curves
+from ..study.summary import describe_orbit, expected_growth, heating_effect
+from .film_motion import film_in_motion
+
+if TYPE_CHECKING:
+    from ..bearing.operating_point import OperatingPoint
+    from ..bearing.table import CoefficientTable
+    from ..files.scenario import Scenario
+    from ..machine.map import StabilityMap
+    from ..orbit import Orbit
+    from .recording import EigenvaluePath, FilmSurface
+
+Result = TypeVar("Result")
+Announce = Callable[[str], None]
+MAP_CELLS = 241
+"""Along each axis of the stability map."""
+FILM_FRAMES = 12
+"""Speeds at which the film's fields are kept for the recording."""
+
+
+@dataclass(frozen=True)
+class Results:
+    """Everything the main job computed (SI); what failed is missing and named in `problems`.
+
+    Attributes
+    ----------
+    scenario : Scenario
+    table : CoefficientTable
+    points : tuple of OperatingPoint
+    curves : tuple of StabilityCurve
+    chart : StabilityMap or None
+    orbits : tuple of Orbit
+        Each thermal model at constant speed, then each through the run-up.
+    films : tuple of FilmSurface
+        In the orbit's clearance: for each thermal model at rest, ascending in speed, and along an
+        orbit on the nonlinear film, ascending in time.
+    eigenvalues : tuple of EigenvaluePath
+        Of the scenario's rotor over speed in the orbit's clearance, for each thermal model.
+    problems : tuple of str
+        What went wrong, where, and what to do.
+    """
+
+    scenario: Scenario
+    table: CoefficientTable
+    points: tuple[OperatingPoint, ...] = ()
+    curves: tuple[StabilityCurve, ...] = ()
+    chart: StabilityMap | None = None
+    orbits: tuple[Orbit, ...] = ()
+    films: tuple[FilmSurface, ...] = ()
+    eigenvalues: tuple[EigenvaluePath, ...] = ()
+    problems: tuple[str, ...] = ()
+
+    @property
+    def rotor_mass(self) -> float | None:
+        """Per bearing [kg]; None without a rotor, or with one that is not rigid."""
+        return rigid_mass(self.scenario.rotor)
+
+    @cached_property
+    def orbit_rows(self) -> list[dict[str, Any]]:
+        """What each orbit comes to (see `describe_orbit`)."""
+        return [describe_orbit(orbit) for orbit in self.orbits]
+
+    @property
+    def films_at_top_speed(self) -> list[FilmSurface]:
+        """Film at rest at the highest speed, of each thermal model."""
+        return list({film.name: film for film in self.films if film.time is None}.values())
+
+
+@dataclass
+class Attempts:
+    """Steps of which one may fail without costing the others."""
+
+    announce: Announce
+    problems: list[str] = field(default_factory=list)
+
+    def __call__(self, label: str, step: Callable[[], Result], instead: Result) -> Result:
+        """Announce and do one step; note a failure and go on with `instead`."""
+        self.announce(label)
+        try:
+            return step()
+        except RotorsimError as error:
+            self.problems.append(f"{label}: {error}")
+        except Exception as error:
+            # A fault in one step must not cost what the others computed.
+            place = traceback.extract_tb(error.__traceback__)[-1]
+            where = f"{Path(place.filename).name}:{place.lineno}"
+            self.problems.append(f"{label}: {type(error).__name__}: {error} ({where})")
+        return instead
+
+
+def compute(
+    scenario: Scenario,
+    points: Sequence[OperatingPoint],
+    table: CoefficientTable,
+    announce: Announce = lambda _text: None,
+    orbits: Sequence[Orbit] | None = None,
+) -> Results:
+    """Do everything that follows from the table; nothing is written.
+
+    With `orbits` those are taken for the scenario's, and none is simulated.
+    """
+    attempt = Attempts(announce)
+    rotor = rotor_on_film(scenario.rotor)
+    curves = attempt("critical mass", lambda: stability_curves(table, rotor), [])
+    paths = attempt("eigenvalues", lambda: eigenvalue_paths(scenario, table), [])
+    chart = attempt("stability map", lambda: map_of(scenario, table), None)
+    films: list[FilmSurface] = []
+    if scenario.orbit is not None:
+        settings, _ = orbit_steps.orbit_settings(scenario)
+        if orbits is None:
+            orbits = simulated_orbits(scenario, table, attempt)
+        films = attempt("film fields", lambda: film_frames(scenario, settings.radial_clearance), [])
+        if settings.force is OrbitForce.FILM:
+            for orbit in orbits:
+                label = f"film along the orbit, {orbit.thermal_model}"
+                films += attempt(label, lambda orbit=orbit: film_in_motion(scenario, orbit), [])
+    orbits = orbits or ()
+    return Results(
+        scenario=scenario,
+        table=table,
+        points=tuple(points),
+        curves=tuple(curves),
+        chart=chart,
+        orbits=tuple(orbits),
+        films=tuple(films),
+        eigenvalues=tuple(paths),
+        problems=tuple(attempt.problems),
+    )
+
+
+def simulated_orbits(scenario: Scenario, table: CoefficientTable, attempt: Attempts) -> list[Orbit]:
+    """The scenario's orbit with each thermal model, and on a linear film its companion."""
+    settings, _ = orbit_steps.orbit_settings(scenario)
+    ramped = isinstance(settings.speed, SpeedRamp)
+    orbits: list[Orbit] = []
+    # A nonlinear film is simulated as the scenario says and no further: it takes its time.
+    # An actuator is designed for one speed: no run-up beside it.
+    alone = settings.force is not OrbitForce.LINEAR or settings.actuator is not None
+    for companion in (False,) if alone else (False, True):
+        for model in scenario.thermal_models:
+            kind = "changing" if ramped != companion else "constant"
+            orbit = attempt(
+                f"orbit at {kind} speed, {model.value}",
+                lambda model=model, companion=companion: one_orbit(
+                    scenario, table, model.value, companion
+                ),
+                None,
+            )
+            orbits += [] if orbit is None else [orbit]
+    return orbits
+
+
+def one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion: bool) -> Orbit:
+    """The scenario's orbit with one thermal model, or its companion (see `companion_schedule`)."""
+    settings, _ = orbit_steps.orbit_settings(scenario)
+    schedule = orbit_steps.companion_schedule(settings, table) if companion else None
+    return orbit_steps.simulate_orbit(scenario, table, thermal_model=model, schedule=schedule)
+
+
+def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
+    """Stability map over speed and the scenario's masses.
+
+    Without masses in the scenario: up to three times that of its rotor; see `_usual_mass`.
+    """
+    from ..machine.map import stability_map
+
+    settings = scenario.stability
+    speeds = np.linspace(table.speeds[0], table.speeds[-1], MAP_CELLS)
+    speeds = speeds if len(table.speeds) > 1 else table.speeds
+    if settings is not None and settings.mass:
+        return stability_map(table, np.asarray(settings.mass), speeds)
+    mass = np.linspace(0.05, 3.0, MAP_CELLS) * _usual_mass(scenario, table)
+    return stability_map(table, mass, speeds)
+
+
+def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
+    """The rotor's mass per bearing [kg]; without one that of its kind.
+
+    That is the critical mass at the highest speed (the median of all), or, where no mass is
+    critical, what weighs as much as the load.
+    """
+    from ..bearing.whirl import rigid_thresholds
+
+    if scenario.rotor is not None:
+        return scenario.rotor.mass
+    top = rigid_thresholds(
+        table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
+    )
+    known = top.critical_mass[np.isfinite(top.critical_mass)]
+    if not known.size and "load" in table.dataset:
+        load = table.dataset["load"].values
+        known = load[np.isfinite(load) & (load > 0.0)] / STANDARD_GRAVITY
+    if not known.size:
+        raise InputError("needs masses: no mass is critical here", key="stability.mass")
+    return float(np.median(known))
+
+
+def eigenvalue_paths(scenario: Scenario, table: CoefficientTable) -> list[EigenvaluePath]:
+    """Eigenvalues of the scenario's rotor over speed, for each thermal model of the table.
+
+    In the orbit's clearance; without an orbit in the first one.
+    """
+    from ..machine.over_speed import converged_speeds, rotor_modes, rotor_thresholds
+    from .recording import EigenvaluePath
+
+    rotor, settings = rotor_on_film(scenario.rotor), scenario.orbit
+    if rotor is None:
+        return []
+    clearance = settings.radial_clearance if settings else scenario.radial_clearances[0]
+    paths = []
+    for model in (str(name) for name in table.dataset["thermal_model"].values):
+        one = orbit_steps.curve_of(table, model, clearance)
+        if converged_speeds(one).size < 2:
+            continue
+        branches, thresholds = rotor_modes(one, rotor), rotor_thresholds(one, rotor)
+        first = thresholds[0] if thresholds else None
+        paths.append(
+            EigenvaluePath(
+                name=model,
+                speed=branches.parameter,
+                eigenvalues=branches.eigenvalues,
+                threshold_speed=None if first is None else first.speed,
+                whirl_frequency_ratio=None if first is None else first.whirl_frequency_ratio,
+            )
+        )
+    return paths
+
+
+def film_frames(scenario: Scenario, clearance: float) -> list[FilmSurface]:
+    """Film over the speeds, for each thermal model; each warm-starts the next."""
+    from ..bearing.solve import solve_case
+    from .recording import FilmSurface
+
+    count = min(len(scenario.speeds), FILM_FRAMES)
+    chosen = np.unique(np.linspace(0, len(scenario.speeds) - 1, count).round().astype(int))
+    frames = []
+    for model in scenario.thermal_models:
+        case, warm = scenario.case(clearance, model), None
+        for speed in scenario.speeds[chosen]:
+            point, warm = solve_case(case, float(speed), initial=warm, keep_fields=True)
+            if point.converged:
+                radius = case.bearing.journal_radius
+                frames.append(FilmSurface.from_operating_point(point, radius))
+            else:
+                warm = None
+    return frames
+
+
+def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
+    """The closing words as plain data: counts, heating's effect, orbits, files, problems."""
+    counts: dict[str, int] = {}
+    for point in results.points:
+        counts[point.status.value] = counts.get(point.status.value, 0) + 1
+    mass = results.rotor_mass
+    settings = results.scenario.orbit
+    passive = settings is None or settings.actuator is None
+    rows = []
+    for orbit, described in zip(results.orbits, results.orbit_rows, strict=True):
+        row = dict(described)
+        # the eigenvalues are those of the film alone
+        if row["kind"] == "constant speed" and mass is not None and passive:
+            row["eigenvalue_growth_rate"] = expected_growth(results.table, orbit, mass)
+        rows.append(row)
+    return {
+        "title": results.scenario.title,
+        "counts": counts,
+        "rotor_mass": mass,
+        "heating": heating_effect(results.points, results.curves),
+        "orbits": rows,
+        "files": files,
+        "problems": list(results.problems),
+    }

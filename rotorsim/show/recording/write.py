@@ -1,0 +1,110 @@
+"""From contents to a file that opens laid out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import rerun as rr
+
+from ...atomic import replacing
+from ...errors import InputError
+from .contents import RecordingContents
+from .eigenvalue_view import log_eigenvalues
+from .film_view import log_films
+from .layout import layout
+from .map_view import log_cascade, log_map
+from .orbit_view import log_orbit
+from .series_view import log_series
+from .spectrum_view import log_spectra
+from .timeline import SAMPLE_LIMIT
+
+APPLICATION = "rotorsim"
+
+
+def write_recording(
+    path: str | Path, contents: RecordingContents, *, page: str = "Overview"
+) -> Path:
+    """Write a recording for the rerun viewer.
+
+    Parameters
+    ----------
+    path : str or Path
+        Ends in ``.rrd``, usually ``logs/NAME.rrd``; missing folders are made. An existing file is
+        replaced only once the new one is whole.
+    contents : RecordingContents
+    page : str
+        The page shown first, one of `rotorsim.show.recording.layout.PAGES`.
+
+    Returns
+    -------
+    Path
+        The file written.
+
+    Raises
+    ------
+    InputError
+        The path does not end in ``.rrd``.
+
+    Notes
+    -----
+    Nothing is sent anywhere: the stream writes to the file alone. Two identical runs give files
+    that differ in their time stamps only (``rerun rrd compare --unordered`` says so).
+    """
+    target = Path(path)
+    if target.suffix.lower() != ".rrd" or not target.name:
+        raise InputError(
+            "a recording's name must end in .rrd, for example logs/dal.rrd", key="path", value=path
+        )
+    # A fresh identity each time: a viewer that still shows the old file would mix the two.
+    stream = rr.RecordingStream(APPLICATION, send_properties=False)
+    with replacing(target) as temporary:
+        with stream:
+            stream.save(temporary, default_blueprint=layout(contents, page))
+            log_contents(stream, contents)
+        stream.disconnect()
+    return target
+
+
+def log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> None:
+    """Write everything to an open stream (a file's, or a running viewer's)."""
+    text = f"# {contents.title}\n\n{contents.summary}{_notes(contents)}"
+    stream.log("summary", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
+    for track in contents.orbits:
+        log_orbit(stream, track)
+        log_series(stream, track)
+    if contents.films:
+        log_films(stream, contents.films, contents.orbits)
+    if contents.eigenvalues:
+        log_eigenvalues(stream, contents.eigenvalues, contents.orbits)
+    for number, picture in enumerate(contents.maps):
+        log_map(stream, picture, number, contents.orbits)
+    for number, cascade in enumerate(contents.cascades):
+        log_cascade(stream, cascade, number)
+    if contents.spectra:
+        log_spectra(stream, contents.spectra)
+
+
+def _notes(contents: RecordingContents) -> str:
+    lines = [
+        "",
+        "## How to read it",
+        "- Timelines: `time` [s], `milli-revolutions` (1000 is one turn of the shaft) and"
+        " `speed_rpm` (film and eigenvalues from speed to speed).",
+        "- Orbits: x along the load, y 90 degrees ahead in the direction of rotation"
+        " (counter-clockwise); at the white line the journal touches the bush.",
+        "- Bearing: true proportions but for the clearance, whose exaggeration is written there;"
+        " the film's height is its pressure or temperature.",
+    ]
+    if any(track.once_per_turn is not None for track in contents.orbits):
+        lines.append("- Red points: the journal once per turn of the shaft, in the steady part.")
+    if any(film.time is not None for film in contents.films):
+        lines.append(
+            "- The film follows the journal in the first and the last turns; between them it is"
+            " shown at some whole turns of the shaft. Its caption says when."
+        )
+    thinned = [t.heading for t in contents.orbits if t.time.size > SAMPLE_LIMIT]
+    if thinned:
+        lines.append(
+            f"- More than {SAMPLE_LIMIT:,} samples, thinned evenly here: {', '.join(thinned)}."
+        )
+    return "\n".join(["", *lines])

@@ -1,0 +1,186 @@
+"""The report: one page with everything in it, for a browser, a printer and a design review."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Iterator
+from html import escape
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...atomic import write_text
+from ...bearing.table_data import CONVENTIONS
+from ...study.wording import RPM, grouped_warnings, number
+from . import html, results
+from .inputs import inputs
+from .verdict import headline
+
+if TYPE_CHECKING:
+    from ..main_job import Results
+
+_CAPTIONS = {
+    "coefficients": "Stiffness and damping against speed, load frame.",
+    "critical_mass": "Critical mass and whirl frequency ratio of a rigid rotor against speed.",
+    "stability_map": "Where a rigid rotor is stable: shaft speed and rotor mass.",
+    "eigenvalues": "Eigenvalues of the rotor on its bearing over speed.",
+    "film": "Film pressure and temperature at the highest speed.",
+    "film_profiles": "Pressure and temperature around the bearing at the highest speed.",
+    "cascade": "Spectra of the journal's motion over shaft speed.",
+    "orbits": "Journal orbits in the clearance circle; ○ start, ● end, + equilibrium.",
+}
+_PLACES = {
+    "film": "static", "film_profiles": "static", "coefficients": "coefficients",
+    "cascade": "orbits", "orbits": "orbits",
+}  # fmt: skip
+_MODEL_LIMITS = (
+    "The film is laminar and the shaft and bush are rigid; the bush does not expand.",
+    "K and C are those of small motions about the equilibrium; a growing motion soon leaves them.",
+    "The critical mass and the map hold for a rigid rotor on two like bearings.",
+)
+
+
+def write_report(found: Results, path: str | Path) -> Path:
+    """Write the report of a scenario's results, whole or not at all."""
+    target = Path(path)
+    write_text(target, report_page(found))
+    return target
+
+
+def report_page(found: Results, when: datetime.datetime | None = None) -> str:
+    """Give the report as HTML that needs no other file and no network.
+
+    Parameters
+    ----------
+    found : Results
+        What `rotorsim.show.main_job.compute` gives.
+    when : datetime, optional
+        Date of the report; now by default.
+    """
+    title = escape(found.scenario.title)
+    style = (files("rotorsim.show.report") / "style.css").read_text(encoding="utf-8")
+    body = "\n".join(part for part in _parts(found, when) if part)
+    # The policy forbids whatever would have to be fetched; nothing here runs as a script.
+    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<link rel="icon" href="data:,">\n<title>{title}</title>\n<style>\n{style}</style>\n'
+        f"</head>\n<body>\n{body}\n</body>\n</html>\n"
+    )
+
+
+def _parts(found: Results, when: datetime.datetime | None) -> Iterator[str]:
+    scenario = found.scenario
+    figures = _figures(found)
+    yield f"<header>\n<h1>{escape(scenario.title)}</h1>\n{_origin(found, when)}\n</header>"
+    yield headline(found)
+    yield html.section("Warnings", html.listing(_warnings(found), "warnings") or _no_warnings())
+    yield html.section("Inputs", inputs(scenario))
+    yield html.section(
+        "Margins",
+        results.margins(found.curves),
+        _not_rigid(found),
+        _tolerances(found),
+        *figures.pop("stability"),
+    )
+    yield html.section("Static results", results.top_points(found.points), *figures.pop("static"))
+    yield html.section("Stiffness and damping", *figures.pop("coefficients"))
+    yield html.section("Orbits", results.orbits(found.orbits), *figures.pop("orbits"))
+    yield html.section("Conventions and limits", _conventions())
+    yield '<div class="appendix">'
+    yield html.section("Appendix A: operating points", results.all_points(found.points))
+    yield html.section("Appendix B: stiffness and damping", results.coefficients(found.table))
+    yield html.section("Appendix C: the scenario", f"<pre>{escape(scenario.text)}</pre>")
+    yield "</div>"
+
+
+def _origin(found: Results, when: datetime.datetime | None) -> str:
+    from ... import __version__
+
+    scenario = found.scenario
+    date = (when or datetime.datetime.now().astimezone()).strftime("%Y-%m-%d %H:%M %Z").strip()
+    source = "" if scenario.source is None else f"{scenario.source.name}, "
+    text = f"Journal bearing report, {date}. Scenario {source}SHA-256 {scenario.sha256}. "
+    return html.paragraph(f"{text}rotorsim {__version__}.", "origin")
+
+
+def _warnings(found: Results) -> list[str]:
+    from ...bearing.checks import regime_warnings
+    from ...bearing.drawing import drawing_warnings
+
+    scenario = found.scenario
+    top = float(scenario.speeds[-1])
+    mass = None if scenario.rotor is None else scenario.rotor.mass
+    lines = list(found.problems)
+    lines += [
+        f"{point.thermal_model}, c = {number(point.radial_clearance * 1e6)} µm, "
+        f"{point.speed * RPM:.0f} rpm: {point.status.value.replace('_', ' ')}. {point.message}"
+        for point in found.points
+        if not point.converged
+    ]
+    lines += grouped_warnings(found.points)
+    already = " ".join(lines)
+    for case in scenario.cases():
+        said = (*drawing_warnings(case, mass), *regime_warnings(case, top))
+        lines += [text for text in said if text not in already and text not in lines]
+    return lines
+
+
+def _not_rigid(found: Results) -> str:
+    """Whose critical mass and map are shown, where the scenario's rotor is another one."""
+    if not found.curves or not found.curves[0].rotor or found.curves[0].mass is not None:
+        return ""
+    return html.paragraph(
+        "M crit, its whirl ratio and the map over mass are those of a rigid rotor, for comparison: "
+        f"they do not hold for the {found.curves[0].rotor} of this scenario. Verdict, threshold, "
+        "decay rate and decrement are the scenario's rotor's."
+    )
+
+
+def _tolerances(found: Results) -> str:
+    """That there is a study which is not on this page."""
+    given = found.scenario.tolerances
+    if given is None:
+        return ""
+    name = "SCENARIO" if found.scenario.source is None else found.scenario.source.name
+    inputs_given = ", ".join(word.replace("_", " ") for word in given.spreads)
+    return html.paragraph(
+        f"The scenario gives tolerances ({inputs_given}); all numbers here are for the nominal "
+        f"values. What the tolerances make of the threshold: rotorsim stability {name} --tolerances"
+    )
+
+
+def _no_warnings() -> str:
+    return html.paragraph("None: every point converged within the model's range.")
+
+
+def _conventions() -> str:
+    return html.listing(
+        [
+            " ".join(CONVENTIONS),
+            "ε: eccentricity over radial clearance; φ: from the load line to the journal's centre, "
+            "with the rotation; S = μ N L D (R/c)²/W, N in revolutions per second.",
+            "Mass margin: 1 − mass over critical mass. Logarithmic decrement: 2π times decay rate "
+            "over damped frequency, of the slowest mode.",
+            "T out: supply temperature plus the heat that the oil carries off over ρ c_p times the "
+            "side flow, where warm and supplied oil mix. To walls: part of the heat that leaves "
+            "through bush and shaft.",
+            *_MODEL_LIMITS,
+        ]
+    )
+
+
+def _figures(found: Results) -> dict[str, list[str]]:
+    """Figures by the section they belong to."""
+    from ..job_figures import figures
+
+    placed: dict[str, list[str]] = {
+        name: [] for name in ("stability", "static", "coefficients", "orbits")
+    }
+    for name, drawn in figures(found):
+        known = max((key for key in _CAPTIONS if name.startswith(key)), key=len, default=name)
+        caption = _CAPTIONS.get(known, name.replace("_", " "))
+        placed[_PLACES.get(known, "stability")].append(html.figure(drawn, caption))
+    return placed

@@ -1,0 +1,211 @@
+"""A magnetic actuator beside the film: designed on its linearisation, tried on the film itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bearing.interpolation import Coefficients
+from ..bearing.whirl import WhirlThreshold, rigid_threshold
+from ..files.scenario.settings import ActuatorSettings, Design
+from ..machine.actuator import ActuatedForce
+from ..model import Case
+from .actuators import design_feedback
+
+if TYPE_CHECKING:
+    import control
+
+    from ..machine.control import LoopMargins, StateFeedback
+    from ..orbit import BearingForce, LoadedFilm, Orbit
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ControlWishes:
+    """What the design is to reach.
+
+    Parameters
+    ----------
+    design : Design
+    max_force : float
+        Saturation of each axis [N].
+    displacement_scale : float or None
+        LQR: a displacement as bad as the full force [m]; None: a hundredth of the clearance.
+    decay_rate : float or None
+        PD: of the slowest mode [1/s]; None: a fiftieth of the shaft speed.
+    disturbance : float or None
+        Displacement from rest with which the run in time begins [m]; None: a fiftieth of the
+        clearance.
+    revolutions : int or None
+        Length of that run; 0: none; None: 100 with a film whose force has a compiled form, 20 with
+        one that is solved at every step.
+    """
+
+    design: Design = Design.LQR
+    max_force: float = math.inf
+    displacement_scale: float | None = None
+    decay_rate: float | None = None
+    disturbance: float | None = None
+    revolutions: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class ControlStudy:
+    """An actuator's feedback and what it does (SI).
+
+    Attributes
+    ----------
+    speed, mass, load, disturbance : float
+    equilibrium : (float, float)
+        [m]
+    passive : WhirlThreshold
+        Of the film alone.
+    passive_eigenvalues, controlled_eigenvalues : (4,) complex arrays
+        [1/s]
+    system : control.StateSpace
+        Rigid rotor on the linearised film.
+    feedback : StateFeedback
+    margins : (LoopMargins, LoopMargins)
+        Of the loops in x and in y.
+    passive_orbit, controlled_orbit : Orbit or None
+        On the nonlinear film, from the disturbance.
+    largest_force : float or None
+        Of one axis of the actuator in that run [N].
+    note : str
+        What the nonlinear film takes for granted.
+    """
+
+    speed: float
+    mass: float
+    load: float
+    disturbance: float
+    equilibrium: tuple[float, float]
+    passive: WhirlThreshold
+    passive_eigenvalues: NDArray[np.complex128]
+    controlled_eigenvalues: NDArray[np.complex128]
+    system: control.StateSpace
+    feedback: StateFeedback
+    margins: tuple[LoopMargins, LoopMargins]
+    passive_orbit: Orbit | None
+    controlled_orbit: Orbit | None
+    largest_force: float | None
+    note: str
+
+    @property
+    def holds(self) -> bool:
+        """Whether the closed loop is stable and the run in time ends nearer to rest than it began.
+
+        Without a run in time, the eigenvalues alone.
+        """
+        stable = complex(self.controlled_eigenvalues[0]).real < 0.0
+        orbit = self.controlled_orbit
+        if orbit is None or not stable:
+            return stable
+        if orbit.status.value in ("touch_down", "integration_failed"):
+            return False
+        late = slice(3 * orbit.t.size // 4, None)
+        x0, y0 = self.equilibrium
+        away = np.hypot(orbit.x[late] - x0, orbit.y[late] - y0)
+        return bool(away.max() < 0.5 * self.disturbance)
+
+
+def study_control(
+    case: Case, speed: float, mass: float, wishes: ControlWishes | None = None
+) -> ControlStudy:
+    """Design the feedback at one speed and try it in time on the nonlinear film.
+
+    Parameters
+    ----------
+    case : Case
+        One bearing with one thermal model.
+    speed : float
+        [rad/s]
+    mass : float
+        Rotor mass per bearing [kg].
+    wishes : ControlWishes, optional
+
+    Raises
+    ------
+    InputError
+        The design reaches its aim with no gain, or nothing carries the load.
+    """
+    from ..machine.control import loop_margins
+    from ..machine.statespace import state_space
+    from ..orbit import find_equilibrium, linearize_force, loaded_film
+    from ..orbit.forces import CompilableForce
+
+    wishes = wishes or ControlWishes()
+    film = loaded_film(case, speed)
+    rest = find_equilibrium(film.force, (film.load, 0.0), speed)
+    linear = Coefficients(*linearize_force(film.force, *rest, speed), speed)
+    system = state_space(linear, mass)
+    clearance = case.bearing.radial_clearance
+    settings = ActuatorSettings(
+        design=wishes.design,
+        force_limit=wishes.max_force,
+        displacement_scale=wishes.displacement_scale,
+        decay_ratio=None if wishes.decay_rate is None else wishes.decay_rate / speed,
+    )
+    feedback = design_feedback(settings, linear, mass, clearance, film.load)
+    disturbance = wishes.disturbance or 0.02 * clearance
+    orbits: list[Orbit | None] = [None, None]
+    largest = None
+    revolutions = wishes.revolutions
+    if revolutions is None:
+        revolutions = 100 if isinstance(film.force, CompilableForce) else 20
+    if revolutions:
+        actuated = ActuatedForce(film.force, feedback, rest)
+        orbits = [
+            _run(force, film, rest, speed, mass, disturbance, revolutions)
+            for force in (film.force, actuated)
+        ]
+        held = orbits[1]
+        assert held is not None
+        largest = float(np.abs(held.actuator_force).max())
+    return ControlStudy(
+        speed=speed,
+        mass=mass,
+        load=film.load,
+        disturbance=disturbance,
+        equilibrium=rest,
+        passive=rigid_threshold(linear.stiffness, linear.damping, speed),
+        passive_eigenvalues=_sorted(system.poles()),
+        controlled_eigenvalues=_sorted(feedback.closed_loop(system).poles()),
+        system=system,
+        feedback=feedback,
+        margins=(loop_margins(system, feedback, 0), loop_margins(system, feedback, 1)),
+        passive_orbit=orbits[0],
+        controlled_orbit=orbits[1],
+        largest_force=largest,
+        note=film.note,
+    )
+
+
+def _run(
+    force: BearingForce, film: LoadedFilm, rest: tuple[float, float], speed: float, mass: float,
+    disturbance: float, revolutions: int,
+) -> Orbit:  # fmt: skip
+    from ..orbit import OrbitProblem, SpeedSchedule, rigid_rotor, simulate
+
+    return simulate(
+        OrbitProblem(
+            force,
+            rigid_rotor(mass),
+            SpeedSchedule.constant(speed, revolutions),
+            static_load=(film.load, 0.0),
+            equilibrium=rest,
+            initial_displacement=(disturbance, 0.0),
+            minimum_film=film.bearing.roughness,
+            samples_per_revolution=32,
+        )
+    )
+
+
+def _sorted(values: NDArray) -> NDArray[np.complex128]:
+    found = np.asarray(values, dtype=complex)
+    return found[np.argsort(np.real(-found), kind="stable")]

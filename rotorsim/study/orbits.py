@@ -1,0 +1,307 @@
+"""From a scenario and its table to simulated orbits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arguments import refuse_path
+from ..errors import InputError
+from ..files.scenario.settings import OrbitForce, SpeedRamp
+from .actuators import with_actuator
+
+if TYPE_CHECKING:
+    from ..bearing.table import CoefficientTable
+    from ..files.scenario import OrbitSettings, Scenario
+    from ..model import Bearing
+    from ..model.rotor import Rotor
+    from ..orbit import LinearForce, LoadedFilm, Orbit, OrbitProblem, RotorModel, SpeedSchedule
+
+UNPLACED = (
+    "the table does not say where the journal stands: the motion is shown about the bearing's "
+    "centre, and touch-down is not looked for"
+)
+MAX_SAMPLES = 2_000_000
+"""Of one orbit that are kept in memory: some 200 MB."""
+RUN_UP_SECONDS = 1.0
+"""Of the run-up that is added to an orbit at one speed."""
+HOLD_SECONDS = 0.3
+"""At its top speed after that, to show what the run-up has led to."""
+RUN_UP_REVOLUTIONS = 60
+"""At the top speed, of the constant-speed orbit that is added to a run-up."""
+
+
+def simulate_orbit(
+    scenario: Scenario,
+    table: CoefficientTable | None = None,
+    *,
+    thermal_model: str | None = None,
+    schedule: SpeedSchedule | None = None,
+    consume: Callable[[Orbit], None] | None = None,
+) -> Orbit:
+    """Integrate the scenario's orbit.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        With ``[orbit]`` and ``[rotor]``.
+    table : CoefficientTable, optional
+        Of this scenario, or any other that covers its clearance and speeds. Default: it is
+        computed. A nonlinear film (``force = "film"``) needs none.
+    thermal_model : str, optional
+        Default: ``thd`` where the scenario (or the table) has it.
+    schedule : SpeedSchedule, optional
+        In place of the scenario's speed.
+    consume : callable, optional
+        Called with each piece of some revolutions as soon as it is there.
+
+    Returns
+    -------
+    Orbit
+        How the run ended is its ``status``. Of a run of more than `MAX_SAMPLES` samples the last
+        ones are kept.
+
+    Raises
+    ------
+    InputError
+        The scenario has no orbit, or the table does not cover it.
+    """
+    from ..orbit import simulate
+
+    refuse_path(scenario)
+    settings, _ = orbit_settings(scenario)
+    if table is None and settings.force is OrbitForce.LINEAR:
+        from .sweep import tabulate
+
+        table = tabulate(scenario)
+    problem = orbit_problem(scenario, table, thermal_model=thermal_model, schedule=schedule)
+    keep = MAX_SAMPLES // problem.samples_per_revolution
+    orbit = simulate(problem, consume=consume, keep_revolutions=keep)
+    if settings.actuator is None or not orbit.t.size:
+        return orbit
+    most = float(np.abs(orbit.actuator_force).max())
+    return replace(orbit, message=f"{orbit.message}; largest actuator force {most:.4g} N")
+
+
+def prepare_film(
+    scenario: Scenario, model: str, progress: Callable[[int, int], None] | None = None
+) -> None:
+    """Solve the force map of a nonlinear film unless it is kept: the first run's longest part.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    model : str
+        Thermal model.
+    progress : callable, optional
+        Called with rows done and rows in all, where there is something to do.
+    """
+    from ..orbit import prepare_map
+
+    settings, _ = orbit_settings(scenario)
+    if settings.force is OrbitForce.FILM:
+        prepare_map(scenario.case(settings.radial_clearance, model), progress)
+
+
+def orbit_problem(
+    scenario: Scenario,
+    table: CoefficientTable | None = None,
+    *,
+    thermal_model: str | None = None,
+    schedule: SpeedSchedule | None = None,
+) -> OrbitProblem:
+    """Put the scenario's orbit together (see `simulate_orbit`; linear force: with a table)."""
+    from ..orbit import OrbitProblem
+
+    settings, rotor = orbit_settings(scenario)
+    schedule = schedule or scenario_schedule(settings)
+    if settings.force is OrbitForce.LINEAR:
+        if table is None:
+            raise InputError(
+                'needs a coefficient table: force is "linear"', source=scenario.source, key="orbit"
+            )
+        model = thermal_model or preferred_model(table)
+        force, bearing = linear_force(scenario, table, model)
+        # the coefficients hold about the loaded position, so that the load itself is left out
+        load, carried = 0.0, _carried_load(table, model, settings, schedule.speeds[0])
+        placed = has_positions(table)
+        note = "" if placed else UNPLACED
+    else:
+        model = thermal_model or preferred_scenario_model(scenario)
+        film, placed = nonlinear_film(scenario, model, max(schedule.speeds)), True
+        force, bearing, load, note = film.force, film.bearing, film.load, film.note
+        carried = load
+    problem = OrbitProblem(
+        force=force,
+        rotor=rotor_model(rotor, unbalance=settings.unbalance),
+        schedule=schedule,
+        static_load=(load if settings.static_load else 0.0, 0.0),
+        initial_displacement=settings.initial_displacement,
+        initial_velocity=settings.initial_velocity,
+        loads=settings.loads,
+        minimum_film=scenario.bearing.roughness,
+        stop_at_contact=placed,
+        samples_per_revolution=settings.samples_per_revolution,
+        thermal_model=model,
+        bearing=bearing,
+        kind=settings.kind.value,
+        note=note,
+    )
+    if settings.actuator is None:
+        return problem
+    return with_actuator(problem, settings.actuator, rotor.mass, carried)
+
+
+def _carried_load(
+    table: CoefficientTable, model: str, settings: OrbitSettings, speed: float
+) -> float | None:
+    """Static load of the table [N]; None where it does not say."""
+    if settings.actuator is None:
+        return None
+    return curve_of(table, model, settings.radial_clearance).at(speed).load
+
+
+def linear_force(
+    scenario: Scenario, table: CoefficientTable, model: str
+) -> tuple[LinearForce, Bearing]:
+    """Stiffness and damping of the table, about its static positions."""
+    from ..orbit import LinearForce
+
+    clearance = orbit_settings(scenario)[0].radial_clearance
+    one = curve_of(table, model, clearance)
+    if not one.converged.any():
+        raise InputError("no point of the table converged", source=scenario.source, key="orbit")
+    force = LinearForce(
+        coefficients=one.interpolator(),
+        radial_clearance=clearance,
+        equilibrium=static_position(one, clearance) if has_positions(one) else (0.0, 0.0),
+    )
+    bearing = replace(scenario.bearing, radial_clearance=clearance)
+    return force, bearing.turned(-scenario.load_direction)
+
+
+def nonlinear_film(scenario: Scenario, model: str, speed: float) -> LoadedFilm:
+    """Nonlinear film of the orbit's bearing, its operating point at `speed` [rad/s].
+
+    With an eccentricity ratio in place of a load, the load is that which gives it at this speed.
+    """
+    from ..orbit import loaded_film
+
+    case = scenario.case(orbit_settings(scenario)[0].radial_clearance, model)
+    try:
+        return loaded_film(case, speed)
+    except InputError as error:
+        raise InputError(
+            error.message, source=scenario.source, key=error.key, value=error.value
+        ) from None
+
+
+def rotor_model(rotor: Rotor, *, unbalance: bool = True) -> RotorModel:
+    """Matrices of the scenario's rotor, with or without its unbalance."""
+    from ..model.rotor import RigidRotor
+    from ..orbit import jeffcott_rotor, rigid_rotor
+
+    moment = rotor.unbalance if unbalance else 0.0
+    if isinstance(rotor, RigidRotor):
+        return rigid_rotor(rotor.mass, moment)
+    return jeffcott_rotor(
+        rotor.disc_mass, rotor.journal_mass, rotor.shaft_stiffness, rotor.disc_damping, moment
+    )
+
+
+def orbit_settings(scenario: Scenario) -> tuple[OrbitSettings, Rotor]:
+    """What to simulate, or an `InputError` that says what the scenario lacks."""
+    if scenario.orbit is None or scenario.rotor is None:
+        missing = "orbit" if scenario.orbit is None else "rotor"
+        raise InputError(
+            f"is missing: an orbit needs the tables [rotor] and [orbit]; add [{missing}]",
+            source=scenario.source,
+            key=missing,
+        )
+    return scenario.orbit, scenario.rotor
+
+
+def scenario_schedule(settings: OrbitSettings) -> SpeedSchedule:
+    """Shaft speed over time, as the scenario has it."""
+    from ..orbit import SpeedSchedule
+
+    if isinstance(settings.speed, SpeedRamp):
+        ramp = settings.speed
+        return SpeedSchedule.ramp(ramp.start, ramp.stop, ramp.duration, ramp.hold)
+    return SpeedSchedule.constant(settings.speed, settings.revolutions or RUN_UP_REVOLUTIONS)
+
+
+def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> SpeedSchedule:
+    """The other kind of run: up from the lowest speed, or constant at the ramp's end."""
+    from ..orbit import SpeedSchedule
+
+    if isinstance(settings.speed, SpeedRamp):
+        return SpeedSchedule.constant(settings.speed.stop, RUN_UP_REVOLUTIONS)
+    lowest = float(table.speeds[0])
+    if settings.speed <= lowest:
+        return scenario_schedule(settings)
+    return SpeedSchedule.ramp(lowest, settings.speed, RUN_UP_SECONDS, HOLD_SECONDS)
+
+
+def preferred_scenario_model(scenario: Scenario) -> str:
+    """``thd`` where the scenario has it, or its first thermal model."""
+    models = [model.value for model in scenario.thermal_models]
+    return "thd" if "thd" in models else models[0]
+
+
+def preferred_model(table: CoefficientTable) -> str:
+    """``thd`` where the table has it, or its first thermal model."""
+    models = [str(name) for name in table.dataset["thermal_model"].values]
+    return "thd" if "thd" in models else models[0]
+
+
+def curve_of(table: CoefficientTable, model: str, clearance: float) -> CoefficientTable:
+    """Curve of a thermal model and a clearance [m]; a table without clearances is for any."""
+    known = table.dataset["radial_clearance"].values
+    chosen = {} if np.isnan(known).all() else {"radial_clearance": clearance}
+    return table.select(thermal_model=model, **chosen)
+
+
+def has_positions(table: CoefficientTable) -> bool:
+    """Whether the table says where the journal stands; one of another program need not."""
+    return {"eccentricity_ratio", "attitude_angle"} <= set(table.dataset)
+
+
+def static_position(
+    one: CoefficientTable, clearance: float
+) -> Callable[[float], tuple[float, float]]:
+    """Journal's static position over speed, from a table of one curve with positions.
+
+    Parameters
+    ----------
+    one : CoefficientTable
+        With a converged point.
+    clearance : float
+        Radial [m].
+
+    Returns
+    -------
+    callable
+        speed [rad/s] -> (x, y) [m] in the load frame; a monotone interpolant (PCHIP) through the
+        converged points.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    usable = one.converged.ravel()
+    curve = one.dataset.squeeze(list(one.choices))
+    eccentricity = curve["eccentricity_ratio"].values * clearance
+    angle = curve["attitude_angle"].values
+    places = np.column_stack([eccentricity * np.cos(angle), eccentricity * np.sin(angle)])[usable]
+    if len(places) == 1:
+        x, y = places[0]
+        return lambda _speed: (float(x), float(y))
+    through = PchipInterpolator(one.speeds[usable], places)
+
+    def position(speed: float) -> tuple[float, float]:
+        x, y = through(speed)
+        return float(x), float(y)
+
+    return position

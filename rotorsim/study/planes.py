@@ -1,0 +1,281 @@
+"""Stability over any two of speed, mass, clearance, load and supply temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..model import LoadTarget, MeshSize
+from ..model.rotor import rigid_mass
+from .axes import tabulate_over
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..bearing.table import CoefficientTable
+    from ..files.scenario import Scenario
+    from .sweep import Progress
+
+Array = NDArray[np.float64]
+
+FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
+"""What the film must be solved again for."""
+DIMENSIONS = ("speed", "mass", *FILM_DIMENSIONS)
+CELLS = 101
+_SPEEDS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """Stability over two inputs (SI), the others held.
+
+    Attributes
+    ----------
+    x, y : str
+        Two of `DIMENSIONS`.
+    held : mapping of str to float
+        The others.
+    dataset : xarray.Dataset
+        Over ``thermal_model``, x and y: ``decay_rate`` (largest real part [1/s]: stable below 0),
+        ``verdict``, ``mass_margin`` and more, see `rotorsim.machine.StabilityMap`.
+    solved_points, failed_points : int
+        Films behind it, and how many of them did not converge.
+    """
+
+    x: str
+    y: str
+    held: Mapping[str, float]
+    dataset: xr.Dataset
+    solved_points: int
+    failed_points: int
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """Thermal models."""
+        return tuple(str(name) for name in self.dataset["thermal_model"].values)
+
+    def values(self, name: str, model: str) -> Array:
+        """Variable of one thermal model, (n_x, n_y)."""
+        part = self.dataset[name].sel(thermal_model=model)
+        return part.transpose(self.x, self.y).values
+
+    def decay(self, model: str) -> Array:
+        """Decay rate [1/s], above 0 where the motion dies out, (n_x, n_y)."""
+        return -self.values("decay_rate", model)
+
+    @property
+    def destabilised_by_heating(self) -> NDArray[np.bool_] | None:
+        """Where only heating makes the rotor unstable, (n_x, n_y); None with one model."""
+        if "destabilised_by_heating" not in self.dataset:
+            return None
+        found = self.dataset["destabilised_by_heating"].transpose(self.x, self.y)
+        return np.asarray(found.values, dtype=bool)
+
+
+def plane_of_scenario(
+    scenario: Scenario,
+    x: str,
+    y: str,
+    values: Mapping[str, Sequence[float]] | None = None,
+    held: Mapping[str, float] | None = None,
+    *,
+    thermal_models: Sequence[str] | None = None,
+    mesh: MeshSize | None = None,
+    cells: int = CELLS,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Plane:
+    """Solve the film where the plane needs it, and map the stability in between.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    x, y : str
+        Two of `DIMENSIONS`.
+    values : mapping, optional
+        Values along x and y, ascending (SI). For what changes the film these are solved; the map
+        goes from the first to the last. The scenario's, or a span about them, by default.
+    held : mapping, optional
+        Values of the others; the scenario's by default, of the speed its highest.
+    thermal_models : sequence of str, optional
+        The scenario's by default.
+    mesh : MeshSize, optional
+        In place of the scenario's.
+    cells : int
+        Values along each axis of the map; 0: those given, nothing interpolated but the speed.
+    executor, workers, progress
+        As for `rotorsim.tabulate`.
+
+    Raises
+    ------
+    InputError
+        Axes alike or unknown, or something left open.
+    """
+    _check_axes(x, y, held)
+    given = {**(values or {}), **{name: [value] for name, value in (held or {}).items()}}
+    axes = {
+        name: _film_values(scenario, name, given.get(name), on_axis=name in (x, y))
+        for name in FILM_DIMENSIONS
+        if name in (x, y) or name in given or name == "radial_clearance"
+    }
+    speeds = np.asarray(given.get("speed", scenario.speeds if "speed" in (x, y) else []))
+    speeds = speeds if speeds.size else scenario.speeds[-1:]
+    table = tabulate_over(
+        scenario, axes, _solved_speeds(scenario, speeds), thermal_models=thermal_models, mesh=mesh,
+        executor=executor, workers=workers, progress=progress,
+    )  # fmt: skip
+    own = rigid_mass(scenario.rotor)
+    mass = given.get("mass")
+    if mass is None and own is not None:
+        mass = _masses_about(own) if "mass" in (x, y) else [own]
+    return plane_of_table(table, x, y, {"speed": speeds, "mass": mass}, cells=cells)
+
+
+def plane_of_table(
+    table: CoefficientTable,
+    x: str,
+    y: str,
+    values: Mapping[str, Sequence[float] | Array | None],
+    held: Mapping[str, float] | None = None,
+    *,
+    cells: int = CELLS,
+) -> Plane:
+    """Map the stability over two inputs that a table holds.
+
+    Parameters
+    ----------
+    table : CoefficientTable
+    x, y : str
+        ``speed``, ``mass`` or a dimension of the table.
+    values : mapping
+        ``speed`` [rad/s] (the tabulated ones by default) and ``mass`` [kg] (along an axis: up to
+        three times the median critical mass at the highest speed by default).
+    held : mapping, optional
+        Where the table's other dimensions are held.
+    cells : int
+        Values along each axis of the map; 0: those given.
+    """
+    from ..machine.map import stability_map
+
+    _check_axes(x, y, held)
+    for name in (x, y):
+        if name not in ("speed", "mass") and name not in table.choices:
+            raise InputError(
+                "is not in this table; give the scenario, which can solve it", key=name
+            )
+    mass = values.get("mass")
+    if mass is None and "mass" in (x, y):
+        mass = _masses_about(_median_critical_mass(table))
+    if mass is None:
+        raise InputError('is missing: a verdict needs it; give for example "900 kg"', key="mass")
+    chosen = {name: value for name, value in (held or {}).items() if name in table.choices}
+    table = table.select(**chosen)
+    for name in (x, y):
+        if name in table.choices and table.dataset.sizes[name] < 2:
+            raise InputError(
+                "has one value in this table, which makes no axis; give the scenario in its place: "
+                "it can be solved at others",
+                key=name, value=float(table.dataset[name].values[0]),
+            )  # fmt: skip
+    size, failed = table.converged.size, int((~table.converged).sum())
+    for name in (x, y):
+        along = table.dataset[name].values if name in table.choices else ()
+        if cells and len(along) > 1:
+            table = table.refine(name, _spread(np.asarray(along), cells))
+    speeds = values.get("speed")
+    speeds = table.speeds if speeds is None else np.asarray(speeds, dtype=float)
+    axes = {"speed": speeds, "mass": np.asarray(mass, dtype=float)}
+    for name in axes:
+        if name in (x, y) and cells and axes[name].size > 1:
+            axes[name] = _spread(axes[name], cells)
+    for name, along in axes.items():
+        if name not in (x, y) and along.size != 1:
+            raise InputError("has several values: say which", key=name)
+        if name in (x, y) and along.size < 2:
+            raise InputError("an axis needs two values or more", key=name, value=float(along[0]))
+    chart = stability_map(table, axes["mass"], axes["speed"])
+    dataset = chart.plane(x, y)
+    kept = {name: float(dataset[name]) for name in DIMENSIONS if name in dataset.coords
+            and name not in (x, y) and np.isfinite(float(dataset[name]))}  # fmt: skip
+    return Plane(x, y, kept, dataset, size, failed)
+
+
+def _check_axes(x: str, y: str, held: Mapping[str, float] | None) -> None:
+    for key, name in (("x", x), ("y", y)):
+        if name not in DIMENSIONS:
+            raise InputError(f"must be one of {', '.join(DIMENSIONS)}", key=key, value=name)
+        if name in (held or {}):
+            raise InputError("is an axis of the map and cannot be held as well", key=name)
+    if x == y:
+        raise InputError("must differ from x", key="y", value=y)
+
+
+def _film_values(
+    scenario: Scenario, name: str, given: Sequence[float] | None, *, on_axis: bool
+) -> list[float]:
+    """Values of a film dimension to solve."""
+    if given is not None:
+        found = [float(value) for value in given]
+        if on_axis and len(found) < 2:
+            raise InputError("an axis needs two values or more", key=name, value=found)
+        return found
+    if name == "radial_clearance":
+        own = list(scenario.radial_clearances)
+        if not on_axis and len(own) > 1:
+            listed = ", ".join(f"{value * 1e6:.4g} um" for value in own)
+            raise InputError(f"say which; the scenario has {listed}", key=name)
+        middle = float(np.mean(own))
+        return (
+            own if len(own) > 2 or not on_axis else [middle * f for f in np.linspace(0.7, 1.4, 7)]
+        )
+    if name == "applied_load":
+        if not isinstance(scenario.target, LoadTarget):
+            raise InputError(
+                "the scenario gives an eccentricity ratio and no load: say which loads", key=name
+            )
+        return [float(scenario.target.load * f) for f in np.geomspace(1.0 / 3.0, 3.0, 9)]
+    supply = scenario.thermal.supply_temperature
+    return [float(supply + d) for d in np.linspace(-20.0, 20.0, 7)]
+
+
+def _solved_speeds(scenario: Scenario, wanted: Array) -> list[float]:
+    """Speeds to solve: the scenario's where they cover the wanted ones densely enough."""
+    low, high = float(wanted[0]), float(wanted[-1])
+    if not high > low:
+        return [low]
+    own = scenario.speeds
+    if np.array_equal(wanted, own):
+        return [float(speed) for speed in own]
+    inside = own[(own > low) & (own < high)]
+    if own[0] <= low and own[-1] >= high and inside.size >= 3:
+        return sorted({low, high, *(float(speed) for speed in inside)})
+    return [float(speed) for speed in np.geomspace(low, high, _SPEEDS)]
+
+
+def _masses_about(middle: float) -> Array:
+    return np.linspace(0.05, 3.0, 60) * middle
+
+
+def _median_critical_mass(table: CoefficientTable) -> float:
+    """Of every curve at the highest speed [kg]."""
+    from ..bearing.whirl import rigid_thresholds
+
+    found = rigid_thresholds(
+        table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
+    ).critical_mass
+    known = found[np.isfinite(found)]
+    if not known.size:
+        raise InputError("needs values: no mass is critical here", key="mass")
+    return float(np.median(known))
+
+
+def _spread(values: Array, cells: int) -> Array:
+    """`cells` values from the first to the last."""
+    return np.linspace(float(values[0]), float(values[-1]), cells)

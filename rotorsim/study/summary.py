@@ -1,0 +1,145 @@
+"""What the closing words say, as plain data (SI)."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from .wording import verdict_at, verdict_over_range
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ..bearing.operating_point import OperatingPoint
+    from ..bearing.table import CoefficientTable
+    from ..orbit import Ellipse, Orbit
+    from .stability import StabilityCurve
+
+
+def describe_orbit(orbit: Orbit) -> dict[str, Any]:
+    """Run and outcome of one orbit: status, extent, growth, whirl (SI).
+
+    ``growth_rate`` is that of small motions at the start. ``amplitude``, ``whirl`` (ellipse at the
+    whirl's frequency) and ``synchronous`` (at the shaft's) are those of the steady part; without
+    one, ``amplitude`` is that of the whole run. ``whirl_range`` says where a run through the speeds
+    whirls.
+    """
+    from ..orbit import analyse
+
+    found = analyse(orbit)
+    growth, recognised = found.growth, found.recognition
+    ratio = None if growth is None else growth.whirl_frequency_ratio
+    if recognised is not None and recognised.whirl_frequency_ratio is not None:
+        ratio = recognised.whirl_frequency_ratio
+    steady = None if recognised is None else recognised.steady_from
+    return {
+        "thermal_model": orbit.thermal_model,
+        "kind": _kind(orbit),
+        "radial_clearance": orbit.radial_clearance,
+        "speed": [float(orbit.speed[0]), float(orbit.speed[-1])],
+        "duration": float(orbit.t[-1]),
+        "revolutions": float(orbit.revolutions[-1]),
+        "status": orbit.status,
+        "message": orbit.message,
+        "max_eccentricity_ratio": float(orbit.eccentricity_ratio.max()),
+        "growth_rate": None if growth is None else growth.rate,
+        "whirl_frequency_ratio": ratio,
+        "orbit_kind": orbit.kind,
+        "force": orbit.force_model,
+        "note": orbit.note,
+        "steady_from": None if steady is None else float(orbit.t[min(steady, orbit.t.size - 1)]),
+        "period": None if recognised is None else recognised.period,
+        "amplitude": found.amplitude,
+        "whirl": _ellipse(found.whirl),
+        "synchronous": _ellipse(found.synchronous),
+        "min_film": found.min_film,
+        "min_film_time": found.min_film_time,
+        "whirl_range": None if found.whirl_range is None else asdict(found.whirl_range),
+        "events": [
+            {"name": event.name, "time": event.time, "x": event.x, "y": event.y}
+            for event in orbit.events
+        ],
+    }
+
+
+def _kind(orbit: Orbit) -> str:
+    if orbit.constant_speed:
+        return "constant speed"
+    return "run-up" if orbit.speed[-1] > orbit.speed[0] else "coast-down"
+
+
+def _ellipse(ellipse: Ellipse | None) -> dict[str, Any] | None:
+    if ellipse is None:
+        return None
+    return {
+        "order": ellipse.order,
+        "semi_major": ellipse.semi_major,
+        "semi_minor": abs(ellipse.semi_minor),
+        "inclination": ellipse.inclination,
+        "direction": "forward" if ellipse.semi_minor >= 0.0 else "backward",
+        "center": list(ellipse.center),
+    }
+
+
+def expected_growth(table: CoefficientTable, orbit: Orbit, mass: float) -> float | None:
+    """Growth rate that the eigenvalues give for the orbit's last speed [1/s]."""
+    from ..errors import InputError
+    from ..machine.rates import eigenvalues
+    from .orbits import curve_of
+
+    try:
+        one = curve_of(table, orbit.thermal_model, orbit.radial_clearance)
+        film = one.at(float(orbit.speed[-1]))
+    except InputError:
+        return None
+    return float(eigenvalues(film.stiffness, film.damping, mass).real.max())
+
+
+def heating_effect(
+    points: Sequence[OperatingPoint], curves: Sequence[StabilityCurve]
+) -> list[dict[str, Any]]:
+    """Isothermal against THD at the highest speed, clearance by clearance.
+
+    Returns
+    -------
+    list of dict
+        ``radial_clearance``, ``speed``, and for each model's name what the film carries and costs
+        there, the critical mass, and of the scenario's rotor its ``verdict`` (``stable``,
+        ``unstable`` or None), ``verdict_over_range`` (``stable throughout``, ``unstable
+        throughout``, ``changes`` or None) and ``threshold_speeds``; ``threshold_speed`` is the
+        first of them.
+    """
+    top = max((point.speed for point in points), default=0.0)
+    known = {
+        (curve.choices["thermal_model"], curve.choices["radial_clearance"]): curve
+        for curve in curves
+    }
+    rows: dict[float, dict[str, Any]] = {}
+    for point in points:
+        if point.speed != top:
+            continue
+        row = rows.setdefault(
+            point.radial_clearance, {"radial_clearance": point.radial_clearance, "speed": top}
+        )
+        curve = known.get((point.thermal_model, point.radial_clearance))
+        found = () if curve is None else curve.threshold_speeds
+        heat = point.heat_balance
+        row[point.thermal_model] = {
+            "status": point.status,
+            "load": point.load,
+            "friction_force": point.friction_force,
+            "power_loss": point.power_loss,
+            "side_flow": point.side_flow,
+            "max_pressure": point.max_pressure,
+            "max_temperature": point.max_temperature,
+            "outlet_temperature": point.outlet_temperature,
+            "wall_heat_share": None if heat is None else heat.wall_share,
+            "min_film_thickness": point.min_film_thickness,
+            "critical_mass": point.critical_mass,
+            "stability": point.stability,
+            "verdict": None if curve is None else verdict_at(curve),
+            "verdict_over_range": None if curve is None else verdict_over_range(curve),
+            "threshold_speeds": list(found),
+            "threshold_speed": found[0] if found else None,
+        }
+    return list(rows.values())

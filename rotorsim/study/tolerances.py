@@ -1,0 +1,353 @@
+"""What tolerances on a drawing mean: the film solved for many samples of its inputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bearing.interpolation import Coefficients
+from ..errors import InputError
+from ..machine.over_speed import RotorOnFilm
+from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
+from ..model import Case, LoadTarget, MeshSize
+from .axes import changed, with_mesh
+from .stability import rotor_on_film
+from .wording import RPM
+
+if TYPE_CHECKING:
+    from ..bearing.interpolation import CoefficientInterpolator
+    from ..bearing.operating_point import OperatingPoint
+    from ..files.scenario import Scenario, ToleranceSettings
+
+Array = NDArray[np.float64]
+
+INPUTS = {
+    "radial_clearance": "radial_clearance",
+    "viscosity": "viscosity",
+    "load": "applied_load",
+    "supply_temperature": "supply_temperature",
+}
+"""Names in a scenario's ``[tolerances]``, and of the change that each makes to a case."""
+
+_SPEEDS = 6
+_REFINEMENTS = 2
+_BATCH = 4
+
+
+@dataclass(frozen=True)
+class FilmThreshold:
+    """From sampled inputs to thresholds, by solving the film: the function that is propagated.
+
+    Parameters
+    ----------
+    case : Case
+    rotor : RotorOnFilm
+    operating_speed : float
+        [rad/s]
+    speeds : tuple of float
+        Between which the threshold is looked for, ascending [rad/s].
+    """
+
+    case: Case
+    rotor: RotorOnFilm
+    operating_speed: float
+    speeds: tuple[float, ...]
+
+    def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
+        """Thresholds of one sample.
+
+        Parameters
+        ----------
+        sample : mapping
+            ``radial_clearance`` [m], ``viscosity`` (a factor), ``load`` [N],
+            ``supply_temperature`` [K].
+
+        Returns
+        -------
+        dict
+            ``decay_rate`` at the operating speed [1/s], above 0 where stable; ``critical_mass``
+            of a rigid rotor there [kg] and its ``whirl_frequency_ratio``, None without a threshold;
+            ``threshold_speed`` [rad/s], the lowest at which the rotor loses its stability, None
+            where none lies within the speeds; ``stable_throughout`` and ``unstable_throughout``,
+            1 or 0.
+
+        Raises
+        ------
+        SampleError
+            The film did not converge.
+        """
+        from ..machine.modes import find_thresholds
+
+        case = changed(self.case, {INPUTS[name]: value for name, value in sample.items()})
+        points = self._along(case, sorted({*self.speeds, self.operating_speed}))
+        at = points[self.operating_speed]
+        crossings = find_thresholds(self._matrix(points), sorted(points))
+        for _ in range(_REFINEMENTS):
+            # The film is solved where the threshold was found, which makes it exact there.
+            lost = next((c.speed for c in crossings if c.becomes_unstable), None)
+            if lost is None or min(abs(lost / s - 1.0) for s in points) < 1e-4:
+                break
+            points |= self._along(case, [lost])
+            crossings = find_thresholds(self._matrix(points), sorted(points))
+        rates = [self._growth(point) for point in points.values()]
+        found = [c.speed for c in crossings if c.becomes_unstable]
+        return {
+            "decay_rate": -self._growth(at),
+            "critical_mass": at.critical_mass,
+            "whirl_frequency_ratio": at.whirl_frequency_ratio,
+            "threshold_speed": found[0] if found else None,
+            "stable_throughout": float(max(rates) < 0.0),
+            "unstable_throughout": float(min(rates) >= 0.0),
+        }
+
+    def _along(self, case: Case, speeds: Sequence[float]) -> dict[float, OperatingPoint]:
+        """Points at ascending speeds, each starting from the one before."""
+        from ..bearing.solve import solve_case
+
+        points, warm = {}, None
+        for speed in speeds:
+            point, warm = solve_case(case, speed, initial=warm)
+            if not point.converged:
+                why = f": {point.message}" if point.message else ""
+                raise SampleError(
+                    f"the film at {speed * RPM:.0f} rpm did not converge "
+                    f"({point.status.value.replace('_', ' ')}{why})"
+                )
+            points[speed] = point
+        return points
+
+    def _growth(self, point: OperatingPoint) -> float:
+        """Largest real part of the eigenvalues [1/s]."""
+        film = Coefficients(point.stiffness, point.damping, point.speed)
+        return float(np.linalg.eigvals(self.rotor.state_matrix(film)).real.max())
+
+    def _matrix(self, points: Mapping[float, OperatingPoint]) -> Callable[[float], Array]:
+        curve = _interpolator(points)
+        return lambda omega: self.rotor.state_matrix(Coefficients(*curve(omega), omega))
+
+
+def _interpolator(points: Mapping[float, OperatingPoint]) -> CoefficientInterpolator:
+    from ..bearing.interpolation import CoefficientInterpolator
+
+    ordered = [points[speed] for speed in sorted(points)]
+    columns = np.array([[*p.stiffness.ravel(), *p.damping.ravel(), p.load] for p in ordered])
+    speeds = np.array(sorted(points))
+    return CoefficientInterpolator.from_columns(speeds, np.ones(speeds.size, dtype=bool), columns)
+
+
+@dataclass(frozen=True, eq=False)
+class ToleranceStudy:
+    """Distribution of thresholds under tolerances (SI).
+
+    Attributes
+    ----------
+    thermal_model : str
+    radial_clearance : float
+        Nominal [m].
+    rotor : RotorOnFilm
+    operating_speed : float
+        [rad/s]
+    tolerances : mapping of str to Tolerance
+    nominal : mapping of str to float or None
+        Outputs (see `FilmThreshold`) without any deviation.
+    samples : Propagation
+    probability_of_instability, standard_error : float
+        At the operating speed.
+    importance : mapping of str to float
+        Rank correlation of each input with the decay rate at the operating speed, strongest first.
+    share_of_variance : mapping of str to float
+        First-order Sobol' index for the same output, by regression (see
+        `rotorsim.machine.Propagation.first_order_index`); they need not add up to 1.
+    explained_variance : float
+        Adjusted R^2 of that regression.
+    """
+
+    thermal_model: str
+    radial_clearance: float
+    rotor: RotorOnFilm
+    operating_speed: float
+    tolerances: Mapping[str, Tolerance]
+    nominal: Mapping[str, float | None]
+    samples: Propagation
+    probability_of_instability: float
+    standard_error: float
+    importance: Mapping[str, float]
+    share_of_variance: Mapping[str, float]
+    explained_variance: float
+
+    @property
+    def most_important(self) -> str:
+        """Input that matters most for the stability at the operating speed."""
+        return next(iter(self.importance))
+
+
+def study_tolerances(
+    scenario: Scenario,
+    settings: ToleranceSettings | None = None,
+    *,
+    rotor: RotorOnFilm | None = None,
+    operating_speed: float | None = None,
+    radial_clearance: float | None = None,
+    thermal_model: str | None = None,
+    mesh: MeshSize | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> ToleranceStudy:
+    """Sample the tolerances, solve the film for every sample, and say what it means.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    settings : ToleranceSettings, optional
+        The scenario's ``[tolerances]`` by default.
+    rotor : RotorOnFilm, optional
+        The scenario's by default.
+    operating_speed : float, optional
+        [rad/s]; by default the orbit's where it is constant, else the highest.
+    radial_clearance, thermal_model : optional
+        Which of the scenario's; by default the only clearance, and ``thd`` where there is a choice.
+    mesh : MeshSize, optional
+        In place of the scenario's.
+    executor : Executor, optional
+        Where to compute; by default processes on this machine.
+    workers : int, optional
+        Number of processes; 1 computes in this one.
+    progress : callable, optional
+        ``progress(done, total)`` in samples.
+
+    Raises
+    ------
+    InputError
+        No tolerances, no rotor, or a spread that reaches below zero.
+    """
+    settings = settings or scenario.tolerances
+    if settings is None:
+        raise InputError(
+            'is missing: write for example [tolerances] radial_clearance = "5 um"', key="tolerances"
+        )
+    rotor = rotor or rotor_on_film(scenario.rotor)
+    if rotor is None:
+        raise InputError("is missing: thresholds need a rotor", key="rotor")
+    scenario = scenario if mesh is None else with_mesh(scenario, mesh)
+    models = [str(model) for model in scenario.thermal_models]
+    model = thermal_model or ("thd" if "thd" in models else models[0])
+    case = scenario.case(radial_clearance, model)
+    speed = operating_speed or _operating_speed(scenario)
+    function = FilmThreshold(case, rotor, speed, _search_speeds(scenario, speed))
+    tolerances = tolerances_of(case, settings)
+    try:
+        nominal = function({name: t.nominal for name, t in tolerances.items()})
+    except SampleError as error:
+        raise InputError(f"without any deviation {error}", key="tolerances") from error
+    samples = propagate(
+        function, tolerances, settings.samples, seed=settings.seed,
+        mapper=_mapper(executor, workers, progress),
+    )  # fmt: skip
+    if len(samples.failures) == len(next(iter(samples.inputs.values()))):
+        raise InputError(f"no sample could be solved: {samples.failures[0][1]}", key="tolerances")
+    p, error = samples.probability_below("decay_rate", 0.0)
+    return ToleranceStudy(
+        thermal_model=model,
+        radial_clearance=case.bearing.radial_clearance,
+        rotor=rotor,
+        operating_speed=speed,
+        tolerances=tolerances,
+        nominal=nominal,
+        samples=samples,
+        probability_of_instability=p,
+        standard_error=error,
+        importance=samples.importance("decay_rate"),
+        share_of_variance=samples.first_order_index("decay_rate"),
+        explained_variance=samples.explained_variance("decay_rate"),
+    )
+
+
+def tolerances_of(case: Case, settings: ToleranceSettings) -> dict[str, Tolerance]:
+    """Distributions about the nominal values of `case`; viscosity as a factor about 1."""
+    nominal = {
+        "radial_clearance": case.bearing.radial_clearance,
+        "viscosity": 1.0,
+        "supply_temperature": case.thermal.supply_temperature,
+    }
+    if isinstance(case.target, LoadTarget):
+        nominal["load"] = case.target.load
+    tolerances = {}
+    for name, spread in settings.spreads.items():
+        if name not in nominal:
+            raise InputError(
+                "goes with operating.load; with an eccentricity ratio the load is a result",
+                key=f"tolerances.{name}",
+            )
+        kind = (spread.distribution or settings.distribution).value
+        tolerance = Tolerance(nominal[name], spread.absolute(nominal[name]), kind)
+        reach = tolerance.spread * (4.0 if kind == "normal" else 1.0)
+        if not reach < nominal[name]:
+            raise InputError(
+                f"reaches below zero: {nominal[name]:.6g} - {reach:.6g}", key=f"tolerances.{name}"
+            )
+        tolerances[name] = tolerance
+    return tolerances
+
+
+def _operating_speed(scenario: Scenario) -> float:
+    settings = scenario.orbit
+    if settings is not None and isinstance(settings.speed, float):
+        return settings.speed
+    return float(scenario.speeds[-1])
+
+
+def _search_speeds(scenario: Scenario, operating_speed: float) -> tuple[float, ...]:
+    """Speeds of the scenario's range; half to one and a half times a single one."""
+    low, high = float(scenario.speeds[0]), float(scenario.speeds[-1])
+    if not high > low:
+        low, high = 0.5 * operating_speed, 1.5 * operating_speed
+    low, high = min(low, operating_speed), max(high, operating_speed)
+    return tuple(float(s) for s in np.geomspace(low, high, _SPEEDS))
+
+
+def _mapper(
+    executor: Executor | None,
+    workers: int | None,
+    progress: Callable[[int, int], None] | None,
+) -> Callable:
+    """``map`` on the executor, or on this machine's processes, a few samples at a time."""
+    from .processes import map_on_processes
+    from .sweep import available_cores
+
+    if executor is not None:
+        if workers is not None:
+            raise InputError("not together with an executor", key="workers", value=workers)
+        return executor.map
+    count = available_cores() if workers is None else workers
+    if count < 1:
+        raise InputError("must be 1 or more", key="workers", value=workers)
+
+    def mapped(function: Callable, samples: Sequence) -> list:
+        batches = [samples[i : i + _BATCH] for i in range(0, len(samples), _BATCH)]
+
+        def report(done: int) -> None:
+            if progress is not None:
+                progress(min(done * _BATCH, len(samples)), len(samples))
+
+        used = min(count, max(1, math.ceil(len(batches) / 2)))
+        done = map_on_processes(_Batch(function), batches, used, report)
+        return [result for batch in done for result in batch]
+
+    return mapped
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """The function on several samples: fewer, larger pieces of work travel to the workers."""
+
+    function: Callable
+
+    def __call__(self, samples: Sequence) -> list:
+        return [self.function(sample) for sample in samples]
