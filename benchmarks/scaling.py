@@ -21,8 +21,8 @@ import numpy as np
 
 from rotorsim.film.banded import factor_operator
 from rotorsim.film.bush import bush_operator
-from rotorsim.film.energy import march
-from rotorsim.film.heat import energy_problem, wall_temperatures
+from rotorsim.film.energy import WallTemperatures, march
+from rotorsim.film.heat import energy_problem
 from rotorsim.film.solution import FilmSolution, solve_film
 from rotorsim.model import (
     Bearing,
@@ -75,7 +75,7 @@ def parts(solution: FilmSolution, repeats: int) -> dict[str, tuple[float, float]
     n, m = problem.mesh.shape
     k = problem.settings.mesh.cross_film
     energy = energy_problem(problem, state)
-    walls = wall_temperatures(problem.thermal, thermal.heat.bush, thermal.heat.shaft)
+    walls = WallTemperatures(thermal.heat.bush, thermal.heat.shaft)
     field = thermal.heat.temperature.copy()
     right = np.ones((n, m))
 

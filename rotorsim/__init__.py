@@ -15,11 +15,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .bearing.operating_point import FilmFields, HeatBalance, OperatingPoint
+    from .bearing.operating_point import FilmFields, OperatingPoint
     from .bearing.solve import solve, solve_case
     from .bearing.table import CoefficientTable
     from .errors import InputError, OutOfRangeError, RotorsimError, ScenarioError, TableError
     from .files.scenario import Scenario, load_scenario
+    from .film.heat import HeatBalance
     from .machine.map import stability_map
     from .machine.statespace import state_space
     from .orbit import Orbit
@@ -61,11 +62,12 @@ __all__ = [
 ]
 
 _HOMES = {
-    "bearing.operating_point": ("FilmFields", "HeatBalance", "OperatingPoint"),
+    "bearing.operating_point": ("FilmFields", "OperatingPoint"),
     "bearing.solve": ("solve", "solve_case"),
     "bearing.table": ("CoefficientTable",),
     "errors": ("InputError", "OutOfRangeError", "RotorsimError", "ScenarioError", "TableError"),
     "files.scenario": ("Scenario", "load_scenario"),
+    "film.heat": ("HeatBalance",),
     "machine.map": ("stability_map",),
     "machine.statespace": ("state_space",),
     "orbit": ("Orbit",),

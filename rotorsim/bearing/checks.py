@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from ..model import BushModel, Case, Inception, InletModel, LoadTarget, ShaftModel, ThermalModel
 from ..model.lubricant import ZERO_CELSIUS
-from .operating_point import HeatBalance
+
+if TYPE_CHECKING:
+    from ..film.heat import HeatBalance
 
 TURBULENT_REYNOLDS = 1000.0
 """rho U c/mu above which a bearing film is expected to be turbulent (Constantinescu)."""

@@ -9,13 +9,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..model import Case, EccentricityTarget, LoadTarget
 from ..status import SolveStatus, Stability
+
+if TYPE_CHECKING:
+    from ..film.heat import HeatBalance
 
 Array = NDArray[np.float64]
 
@@ -59,27 +62,6 @@ class FilmFields:
     viscosity: Array
     bush_temperature: Array
     shaft_temperature: float
-
-
-@dataclass(frozen=True)
-class HeatBalance:
-    """Where the friction's power goes [W]; `imbalance` is the relative remainder."""
-
-    dissipation: float
-    enthalpy_out: float
-    to_bush: float
-    to_shaft: float
-
-    @property
-    def imbalance(self) -> float:
-        """(dissipation - enthalpy - bush - shaft)/dissipation [-]."""
-        rest = self.dissipation - self.enthalpy_out - self.to_bush - self.to_shaft
-        return rest / self.dissipation if self.dissipation else 0.0
-
-    @property
-    def wall_share(self) -> float:
-        """(bush + shaft)/dissipation [-]: what the oil does not carry off."""
-        return (self.to_bush + self.to_shaft) / self.dissipation if self.dissipation else 0.0
 
 
 @dataclass(frozen=True)
@@ -207,6 +189,8 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
     KeyError, TypeError, ValueError
         If `record` was not made by `point_to_dict`.
     """
+    from ..film.heat import HeatBalance  # with its compiled kernels: not to be loaded for a table
+
     values = dict(record)
     values["status"] = SolveStatus(values["status"])
     values["stability"] = None if values["stability"] is None else Stability(values["stability"])

@@ -14,14 +14,14 @@ from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import film_flow
 from ..film.following import following_stiffness
-from ..film.heat import heat_totals, wall_temperatures, with_groove_oil
+from ..film.heat import HeatBalance, with_groove_oil
 from ..film.linearized import linearize
 from ..film.losses import friction_force, peak, side_flow
 from ..film.solution import FilmSolution, WarmStart, solve_film
 from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
 from ..status import SolveStatus
 from .checks import regime_warnings
-from .operating_point import FilmFields, HeatBalance, OperatingPoint, failed_point
+from .operating_point import FilmFields, OperatingPoint, failed_point
 from .whirl import rigid_threshold
 
 if TYPE_CHECKING:
@@ -189,7 +189,7 @@ def operating_point(
     elif not finite and status in _WITH_NUMBERS:
         status, message = SolveStatus.FAILED, message or "the solution is not finite"
     mean_viscosity = float(case.lubricant.viscosity(mean)) if math.isfinite(mean) else None
-    heat = _heat_balance(solution)
+    heat = solution.thermal.balance if solution.thermal is not None else None
     return OperatingPoint(
         status=status,
         message=message,
@@ -263,19 +263,6 @@ def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float
     total = float(np.sum(weight)) * temperature.shape[2]
     mean = float(np.sum(weight * temperature)) / total if total > 0.0 else math.nan
     return float(temperature[film].max()), mean
-
-
-def _heat_balance(solution: FilmSolution) -> HeatBalance | None:
-    thermal = solution.thermal
-    if thermal is None:
-        return None
-    problem = solution.problem
-    walls = wall_temperatures(problem.thermal, thermal.heat.bush, thermal.heat.shaft)
-    totals = heat_totals(
-        problem, thermal.energy, thermal.heat.temperature, walls,
-        thermal.inlet_temperature, thermal.leaving_temperature,
-    )  # fmt: skip
-    return HeatBalance(totals.dissipation, totals.enthalpy_out, totals.to_bush, totals.to_shaft)
 
 
 def _outlet_temperature(case: Case, flow: float, heat: HeatBalance | None) -> float | None:

@@ -14,10 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from ..errors import InputError
-from .energy import EnergyProblem
-from .problem import FilmProblem
-
 Array = NDArray[np.float64]
 
 
@@ -173,57 +169,8 @@ def _first_column(diagonal: Array, links: Array) -> Array:
     return column
 
 
-class BushConduction:
-    """The bush as the thermal fixed point sees it."""
-
-    def __init__(self, operator: BushOperator, ambient: float) -> None:
-        self.operator = operator
-        self.ambient = ambient
-
-    @classmethod
-    def of(cls, problem: FilmProblem) -> BushConduction:
-        """Build the bush of a film problem; operators of recent meshes are kept.
-
-        Raises
-        ------
-        InputError
-            The bearing has no `bush_outer_radius`.
-        """
-        mesh, thermal, bearing = problem.mesh, problem.thermal, problem.bearing
-        outer = bearing.bush_outer_radius
-        if outer is None:
-            raise InputError(
-                "is missing: conduction in the bush needs it; give it in metres, for example "
-                f"bush_outer_radius={1.5 * bearing.journal_radius:.3g}, or another bush model",
-                key="bearing.bush_outer_radius",
-            )
-        transfer = thermal.bush_heat_transfer
-        operator = _kept_operator(
-            mesh.theta_faces.tobytes(),
-            mesh.y_faces.tobytes(),
-            (bearing.journal_radius, outer),
-            problem.settings.mesh.bush_radial,
-            thermal.bush_conductivity,
-            transfer,
-            (0.0 if mesh.half else transfer, transfer),
-        )
-        return cls(operator, thermal.ambient_temperature)
-
-    def respond(self, heat: Array, bore: Array, energy: EnergyProblem, area: Array) -> Array:
-        """Bore temperature [K] that answers the film's heat [W a cell] at the old `bore` [K].
-
-        The film is taken to answer a change of the bore with a uniform conductance (a Robin
-        condition): handing over the flux itself would not converge, since the surroundings take
-        far less heat per degree than the film brings.
-        """
-        layers = energy.layers.pressure_share.shape[2]
-        conductance = 2.0 * float(energy.conductance.sum()) / layers / float(area.sum())
-        reference = bore - self.ambient + heat / area / conductance
-        return self.ambient + self.operator.robin_rise(reference, conductance)
-
-
 @lru_cache(maxsize=8)
-def _kept_operator(
+def kept_operator(
     theta_faces: bytes,
     y_faces: bytes,
     radii: tuple[float, float],
@@ -232,6 +179,7 @@ def _kept_operator(
     outer_transfer: float,
     end_transfer: tuple[float, float],
 ) -> BushOperator:
+    """Return `bush_operator` of hashable arguments, one of the last few if it is the same."""
     return bush_operator(
         np.frombuffer(theta_faces),
         np.frombuffer(y_faces),

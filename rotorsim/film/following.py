@@ -43,7 +43,7 @@ def following_stiffness(problem: FilmProblem, film: ThermalFilm) -> tuple[Array,
             problem,
             (x + dx, y + dy),
             initial=replace(film.heat, temperature=film.heat.temperature.copy()),
-            held=film.state.solution.full,
+            full=film.state.solution.full,
             tolerance=STEP_TOLERANCE,
         )
         for dx, dy in shifts

@@ -1,4 +1,4 @@
-"""Temperatures around the film: what enters, both walls, and the balance of the heat."""
+"""What enters and leaves the film: temperatures of the inlets, and the balance of the heat."""
 
 from __future__ import annotations
 
@@ -7,25 +7,66 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import BushModel, InletModel, ShaftModel, ThermalSettings
-from .energy import EnergyProblem, WallTemperatures, dissipation
+from ..model import InletModel
+from .energy import EnergyProblem, dissipation
 from .flow import FilmFlow, film_flow
 from .operator import EAST, NORTH, SOUTH, WEST
 from .problem import FilmProblem
 from .state import FilmState
+from .walls import FilmContact, Walls
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class HeatTotals:
-    """Power [W] of the whole bearing (both halves)."""
+class Heat:
+    """Temperatures of the film and its walls.
+
+    Attributes
+    ----------
+    temperature : (n, m, k) array
+        [K]
+    bush : (n, m) array
+        Of the bore [K].
+    shaft : float
+        [K]
+    """
+
+    temperature: Array
+    bush: Array
+    shaft: float
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """Where the power that the film turns into heat goes [W], of the whole bearing."""
 
     dissipation: float
     enthalpy_out: float
     to_bush: float
     to_shaft: float
+
+    @property
+    def remainder(self) -> float:
+        """Heat that is not accounted for [W]."""
+        return self.dissipation - self.enthalpy_out - self.to_bush - self.to_shaft
+
+    @property
+    def imbalance(self) -> float:
+        """The remainder relative to the dissipation [-]."""
+        return self.remainder / self.dissipation if self.dissipation else 0.0
+
+    @property
+    def wall_share(self) -> float:
+        """(bush + shaft)/dissipation [-]: what the oil does not carry off."""
+        return (self.to_bush + self.to_shaft) / self.dissipation if self.dissipation else 0.0
+
+    @property
+    def turnover(self) -> float:
+        """All heat that enters the film, dissipated, with warm oil or from warm walls [W]."""
+        others = (self.enthalpy_out, self.to_bush, self.to_shaft)
+        return self.dissipation + sum(max(-power, 0.0) for power in others)
 
 
 def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
@@ -84,42 +125,6 @@ def _march_order(problem: FilmProblem, flow: FilmFlow) -> NDArray[np.int64]:
     first = int(np.argmax(entering)) if entering.any() else 0
     n = problem.mesh.shape[0]
     return (first + np.arange(n)) % n
-
-
-def wall_temperatures(thermal: ThermalSettings, bush: Array, shaft: float) -> WallTemperatures:
-    """The walls as the energy equation takes them."""
-    return WallTemperatures(
-        bush=bush, shaft=shaft, bush_insulated=thermal.bush is BushModel.INSULATED
-    )
-
-
-def start_wall_temperatures(
-    thermal: ThermalSettings, shape: tuple[int, int]
-) -> tuple[Array, float]:
-    """First guess of the bush's bore (n, m) and the shaft [K]; the truth where they are given."""
-    shaft = {
-        ShaftModel.AMBIENT: thermal.ambient_temperature,
-        ShaftModel.INSULATED: thermal.supply_temperature,
-        ShaftModel.GIVEN: thermal.shaft_temperature or thermal.ambient_temperature,
-    }[thermal.shaft]
-    bush = (
-        thermal.ambient_temperature
-        if thermal.bush is BushModel.AMBIENT
-        else thermal.supply_temperature
-    )
-    return np.full(shape, bush), shaft
-
-
-def heat_to_shaft(energy: EnergyProblem, temperature: Array, shaft: float) -> float:
-    """Heat the film gives to the shaft, over the meshed part [W]."""
-    return float(np.sum(2.0 * energy.conductance * (temperature[:, :, -1] - shaft)))
-
-
-def heat_to_bush(energy: EnergyProblem, temperature: Array, walls: WallTemperatures) -> Array:
-    """Heat each cell gives to the bush [W], (n, m)."""
-    if walls.bush_insulated:
-        return np.zeros(walls.bush.shape)
-    return 2.0 * energy.conductance * (temperature[:, :, 0] - walls.bush)
 
 
 def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
@@ -239,22 +244,24 @@ def dissipated_power(energy: EnergyProblem) -> float:
     return float(np.sum(energy.heating[2] * layers.f2 + energy.heating[0] * layers.f0))
 
 
-def heat_totals(
+def heat_balance(
     problem: FilmProblem,
     energy: EnergyProblem,
-    temperature: Array,
-    walls: WallTemperatures,
+    heat: Heat,
+    walls: Walls,
     inlet_temperature: Array,
     leaving_temperature: Array,
-) -> HeatTotals:
-    """Where the dissipated power goes, over both halves."""
-    times = problem.mesh.multiplicity
-    enthalpy = _enthalpy_out(energy, temperature, inlet_temperature, leaving_temperature)
-    return HeatTotals(
+) -> HeatBalance:
+    """Return where the dissipated power goes, over both halves."""
+    times, film = problem.mesh.multiplicity, heat.temperature
+    enthalpy = _enthalpy_out(energy, film, inlet_temperature, leaving_temperature)
+    to_bush = walls.bush.heat(heat.bush, FilmContact.bush(energy, film))
+    to_shaft = walls.shaft.heat(heat.shaft, FilmContact.shaft(energy, film))
+    return HeatBalance(
         dissipation=times * dissipated_power(energy),
         enthalpy_out=times * energy.heat_capacity * enthalpy,
-        to_bush=times * float(heat_to_bush(energy, temperature, walls).sum()),
-        to_shaft=times * heat_to_shaft(energy, temperature, walls.shaft),
+        to_bush=times * float(to_bush.sum()),
+        to_shaft=times * float(to_shaft.sum()),
     )
 
 

@@ -3,99 +3,79 @@
 One iteration takes a temperature field (and both walls) through viscosity, Dowson's equation and
 the energy equation to a new temperature field; Anderson acceleration mixes them. A `move` callback
 may shift the journal between iterations, so that position and temperature converge together.
+
+A film has converged when all of the following hold.
+
+=============  =====================================================================================
+force          the search's relative residual is below `force_tolerance`
+temperature    in one iteration no log viscosity changes by `TOLERANCE`, no temperature by 1e-4 of
+               the field's spread, and no wall's heat by 1e-3 of the dissipation
+heat balance   it closes within `BALANCE_TOLERANCE` of the dissipation
+rupture        few cells break the rupture condition (`VIOLATIONS_ALLOWED`)
+=============  =====================================================================================
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import BushModel, InletModel, ShaftModel
+from ..model import InletModel
 from .anderson import AndersonMixer
-from .bush import BushConduction
-from .energy import EnergyProblem, march
+from .energy import EnergyProblem, WallTemperatures, march
 from .heat import (
+    Heat,
+    HeatBalance,
     dissipated_power,
     energy_problem,
-    heat_to_bush,
-    heat_to_shaft,
+    heat_balance,
     inlet_temperatures,
-    start_wall_temperatures,
-    wall_temperatures,
 )
 from .layers import layer_integrals
 from .problem import FilmProblem, film_state
 from .state import FilmState
+from .walls import FilmContact, Walls, choose_walls
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Position = tuple[float, float]
 
 TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
+SPREAD_WEIGHT = 0.1
+"""How a change of temperature relative to the field's spread counts, as one of log viscosity."""
+SMALLEST_SPREAD = 1e-2
+"""[K]; temperatures closer together than this need not be known relative to their spread."""
+BALANCE_TOLERANCE = 1e-3
+"""Part of the dissipation that may be unaccounted for in a converged film."""
+BALANCE_ROUNDING = 1e-9
+"""Part of all heat that enters the film which is lost in rounding."""
+HEAT_WEIGHT = 0.01
+"""How heat on which film and walls disagree counts, relative to the dissipation."""
 MAX_ITERATIONS = 150
 FAR_RESIDUAL = 0.1
 """Change of log viscosity above which the cells' states are guessed anew."""
 ROUGH_TOLERANCE = 0.02
 """Change of log viscosity and relative force residual at which the solution is known roughly."""
-HEAT_WEIGHT = 0.01
-"""How heat astray, relative to the dissipation, counts against a change of log viscosity."""
 STAGNATION = 6
 """Iterations over which the residual should at least halve."""
 FREEZE_AFTER = 12
-"""Iterations from which a stagnating film's cells are held full or ruptured, as they are."""
+"""Iterations from which a stagnating film's cells are kept full or ruptured, as they are."""
 VIOLATIONS_ALLOWED = 2e-3
-"""Part of the cells that may break the rupture condition at the end because they were held."""
+"""Part of the cells that may break the rupture condition at the end because they were kept."""
 UNREACHABLE_STEPS = 8
 """Iterations that the search may lie at the end of its range before it is given up."""
+BEYOND_LIMITS_STEPS = 25
+"""Iterations in a row that may lead beyond the temperature limits before the film is given up."""
 POSITION_WEIGHT = 30.0
 """[K]; a clearance's change of position counts like this change of the whole temperature field."""
 TEMPERATURE_LIMITS = (150.0, 650.0)
 """[K]; an iterate outside is pulled back, a converged field outside is out of range."""
-
-
-@dataclass(frozen=True)
-class Heat:
-    """Temperatures of the film and its walls.
-
-    Attributes
-    ----------
-    temperature : (n, m, k) array
-        [K]
-    bush : (n, m) array
-        Of the bore [K].
-    shaft : float
-        [K]
-    """
-
-    temperature: Array
-    bush: Array
-    shaft: float
-
-    def packed(self, position: Position, clearance: float) -> Array:
-        """All unknowns in one flat array, the position weighing as much as the whole field."""
-        weight = self._weight(clearance)
-        tail = [self.shaft, weight * position[0], weight * position[1]]
-        return np.concatenate([self.temperature.ravel(), self.bush.ravel(), tail])
-
-    def unpacked(self, packed: Array, clearance: float) -> tuple[Heat, Position]:
-        """The reverse of `packed`, temperatures held within their limits."""
-        films, bore = self.temperature.size, self.bush.size
-        np.clip(packed[:-2], *TEMPERATURE_LIMITS, out=packed[:-2])
-        heat = Heat(
-            temperature=packed[:films].reshape(self.temperature.shape),
-            bush=packed[films : films + bore].reshape(self.bush.shape),
-            shaft=float(packed[-3]),
-        )
-        weight = self._weight(clearance)
-        return heat, (float(packed[-2]) / weight, float(packed[-1]) / weight)
-
-    def _weight(self, clearance: float) -> float:
-        return POSITION_WEIGHT * math.sqrt(self.temperature.size) / clearance
 
 
 @dataclass(frozen=True)
@@ -110,28 +90,35 @@ class ThermalFilm:
     viscosity : (n, m, k) array
         [Pa s]
     energy : EnergyProblem
+    walls : Walls
     inlet_temperature : (4, n, m) array
         [K]
     leaving_temperature : (2, n, m, k) array
         Of the oil that leaves each cell along the film and the axis [K].
+    balance : HeatBalance
     converged : bool
+    cause : str
+        What has not converged; empty if `converged`.
+    out_of_range : bool
+        Whether the temperatures left `TEMPERATURE_LIMITS`.
     iterations : int
     residual : float
-        Last change of log viscosity.
-    history : tuple of float
-        The residual of every iteration.
+        Last change of log viscosity, or what counts as much (see `_change`).
     """
 
     state: FilmState
     heat: Heat
     viscosity: Array
     energy: EnergyProblem
+    walls: Walls
     inlet_temperature: Array
     leaving_temperature: Array
+    balance: HeatBalance
     converged: bool
+    cause: str
+    out_of_range: bool
     iterations: int
     residual: float
-    history: tuple[float, ...]
 
 
 class Move(Protocol):
@@ -149,11 +136,11 @@ class Move(Protocol):
 
 
 def uniform_heat(problem: FilmProblem) -> Heat:
-    """The film at supply temperature throughout."""
-    n, m = problem.mesh.shape
-    bush, shaft = start_wall_temperatures(problem.thermal, (n, m))
+    """Return the film at supply temperature throughout, between its walls."""
+    walls, shape = choose_walls(problem), problem.mesh.shape
     layers = problem.settings.mesh.cross_film
-    return Heat(np.full((n, m, layers), problem.thermal.supply_temperature), bush, shaft)
+    film = np.full((*shape, layers), problem.thermal.supply_temperature)
+    return Heat(film, walls.bush.start(shape), float(walls.shaft.start(())))
 
 
 def solve_thermal_film(
@@ -162,7 +149,7 @@ def solve_thermal_film(
     *,
     initial: Heat | None = None,
     move: Move | None = None,
-    held: NDArray[np.bool_] | None = None,
+    full: Flags | None = None,
     proceed: Callable[[Position], bool] | None = None,
     force_tolerance: float = 1e-7,
     tolerance: float = TOLERANCE,
@@ -178,62 +165,49 @@ def solve_thermal_film(
         A neighbouring solution.
     move : callable, optional
         Gives the next position; called once an iteration.
-    held : (n, m) bool array, optional
+    full : (n, m) bool array, optional
         The full cells, taken as given throughout.
     proceed : callable, optional
-        Asked once, when the solution is known roughly, whether to go on from this position; if
-        not, the rough solution is returned, `converged` False.
-
-    Notes
-    -----
-    A cell at the edge of the full film may have no state that agrees with its own heat: full, the
-    film warms and it ruptures; ruptured, it cools and fills. The iteration then circles around a
-    cell or two for ever. After a while the states are therefore held; the solution is accepted if
-    no more than a few cells break the rupture condition, which is the mesh's own uncertainty.
+        Called once, when both residuals fall below `ROUGH_TOLERANCE`, with the position. Return
+        False to get the rough solution back (`converged` False), as for a mesh graded anew.
+    tolerance : float
+        Of the change of log viscosity; the other tolerances stay.
 
     Returns
     -------
     ThermalFilm
-        With ``converged`` False if `max_iterations` did not suffice.
+        With `converged` False and a `cause` if `max_iterations` did not suffice.
     """
     heat = uniform_heat(problem) if initial is None else initial
-    clearance = problem.bearing.radial_clearance
-    mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 3)
-    release, stuck = FREEZE_AFTER, 0
-    law, bush = problem.lubricant.law, _bush_of(problem)
-    guess, frozen, leaving, history = None, held, None, []
+    clearance, walls = problem.bearing.radial_clearance, choose_walls(problem)
+    mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 1 + len(position))
+    progress, leaving = _Progress(kept=full, given=full is not None), None
     while True:
-        viscosity = law.viscosity(heat.temperature)
-        layers = layer_integrals(viscosity)
-        state = film_state(problem, position, layers, start=guess, frozen=frozen)
-        full = state.solution.full
-        energy = energy_problem(problem, state)
-        inlet = inlet_temperatures(problem, energy, heat.temperature)
-        mapped, leaving = _through_energy(problem, energy, viscosity, heat, inlet, bush, leaving)
-        residual = _change(problem, energy, mapped, heat)
-        history.append(residual)
-        # While the heat still moves much, coarser meshes guess the full cells better than the past.
-        guess = full if residual < FAR_RESIDUAL else None
-        target, off = (position, 0.0) if move is None else move(state)
-        stuck = stuck + 1 if move is not None and move.unreachable else 0
-        roughly = residual < ROUGH_TOLERANCE and off < ROUGH_TOLERANCE
+        step = _apply(problem, walls, position, heat, progress, leaving)
+        leaving = step.leaving
+        target, off = (position, 0.0) if move is None else move(step.state)
+        progress.record(step, unreachable=move is not None and move.unreachable)
         stop = False
-        if proceed is not None and roughly:
-            stop, proceed = not proceed(state.position), None
-        done = residual < tolerance and off < force_tolerance and not stop
-        if done and held is None and state.solution.violations > VIOLATIONS_ALLOWED * full.size:
-            done, frozen, release = False, None, len(history) + FREEZE_AFTER
-        elif frozen is None and len(history) >= release and _stagnates(history):
-            frozen = full
-        given_up = stuck >= UNREACHABLE_STEPS or not np.isfinite(residual)
-        if done or stop or given_up or len(history) >= max_iterations:
+        if proceed is not None and max(step.residual, off) < ROUGH_TOLERANCE:
+            stop, proceed = not proceed(step.state.position), None
+        cause = _unsettled(step.residual, tolerance, off, force_tolerance)
+        balance = None
+        if not (cause or stop):
+            balance = _balance(problem, walls, heat, step)
+            cause = _unbalanced(balance) or progress.broken_rupture(step)
+        if not cause or stop or progress.hopeless(max_iterations):
             return ThermalFilm(
-                state=state, heat=heat, viscosity=viscosity, energy=energy,
-                inlet_temperature=inlet, leaving_temperature=leaving, converged=done,
-                iterations=len(history), residual=residual, history=tuple(history),
+                state=step.state, heat=heat, viscosity=step.viscosity, energy=step.energy,
+                walls=walls, inlet_temperature=step.inlet, leaving_temperature=leaving,
+                balance=balance or _balance(problem, walls, heat, step),
+                cause=cause or "the position is known roughly only",
+                converged=not (cause or stop), out_of_range=progress.out_of_range(heat),
+                iterations=len(progress.history), residual=step.residual,
             )  # fmt: skip
-        mixed = mixer.next(heat.packed(position, clearance), mapped.packed(target, clearance))
-        heat, following = heat.unpacked(mixed, clearance)
+        mixed = mixer.next(
+            _packed(heat, position, clearance), _packed(step.mapped, target, clearance)
+        )
+        heat, following = _unpacked(mixed, heat, len(position), clearance)
         if move is not None:
             allowed = move.allowed(position, following)
             if allowed != following:
@@ -241,72 +215,171 @@ def solve_thermal_film(
             position = allowed
 
 
-def _stagnates(history: list[float]) -> bool:
-    """Whether the last iterations brought little against the best before them."""
-    recent = history[-STAGNATION:]
-    return min(recent) > 0.5 * min(history[:-STAGNATION])
+@dataclass(frozen=True)
+class _Step:
+    """What one temperature field leads to: the film, and the next temperatures `mapped`."""
+
+    state: FilmState
+    viscosity: Array
+    energy: EnergyProblem
+    inlet: Array
+    leaving: Array
+    mapped: Heat
+    residual: float
 
 
-def _change(problem: FilmProblem, energy: EnergyProblem, mapped: Heat, heat: Heat) -> float:
-    """Largest change of log viscosity anywhere, as the oil thins fastest; walls included.
+@dataclass
+class _Progress:
+    """How the iteration goes, and what it does about cells that find no state.
 
-    Where conduction across the film is strong against what flows, temperatures that hardly change
-    still carry heat into walls that should take none: that counts too, relative to the dissipation.
+    A cell at the edge of the full film may have no state that agrees with its own heat: full, the
+    film warms and it ruptures; ruptured, it cools and fills. The iteration then circles around a
+    cell or two for ever. After a while the states are therefore kept; the solution is accepted if
+    no more than a few cells break the rupture condition, which is the mesh's own uncertainty.
     """
-    bore, shaft = np.abs(mapped.bush - heat.bush), abs(mapped.shaft - heat.shaft)
-    change = max(
-        float(np.abs(mapped.temperature - heat.temperature).max()), float(bore.max()), shaft
-    )
-    coldest = float(mapped.temperature.min())
-    near = problem.lubricant.law.viscosity(np.array([coldest, coldest + 1e-3]))
-    thinning = max(float(np.log(near[0] / near[1])) / 1e-3, 1e-6)
-    layers = energy.layers.pressure_share.shape[2]
-    exchanged = shaft * _film_conductance(energy)
-    if problem.thermal.bush is BushModel.CONDUCTION:
-        exchanged += float(np.sum(2.0 * energy.conductance * bore)) / layers
-    made = dissipated_power(energy)
-    return max(change * thinning, HEAT_WEIGHT * exchanged / made if made > 0.0 else 0.0)
+
+    kept: Flags | None
+    """Full cells, while their states are kept."""
+    given: bool
+    """Whether they are kept throughout, as the caller asked."""
+    guess: Flags | None = None
+    """First guess of the full cells."""
+    history: list[float] = field(default_factory=list)
+    release: int = FREEZE_AFTER
+    stuck: int = 0
+    beyond: int = 0
+
+    def record(self, step: _Step, *, unreachable: bool) -> None:
+        """Take notice of a step."""
+        full = step.state.solution.full
+        self.history.append(step.residual)
+        # While the heat still moves much, coarser meshes guess the full cells better than the past.
+        self.guess = full if step.residual < FAR_RESIDUAL else None
+        self.stuck = self.stuck + 1 if unreachable else 0
+        self.beyond = self.beyond + 1 if _beyond_limits(step.mapped.temperature) else 0
+        if self.kept is None and len(self.history) >= self.release and self._stagnates():
+            self.kept = full
+
+    def broken_rupture(self, step: _Step) -> str:
+        """Say how many cells break the rupture condition if too many; their states are released."""
+        broken, cells = step.state.solution.violations, step.state.solution.full.size
+        if self.given or broken <= VIOLATIONS_ALLOWED * cells:
+            return ""
+        self.kept, self.release = None, len(self.history) + FREEZE_AFTER
+        return f"{broken} of {cells} cells break the rupture condition"
+
+    def hopeless(self, max_iterations: int) -> bool:
+        """Whether to give up."""
+        lost = self.stuck >= UNREACHABLE_STEPS or self.beyond >= BEYOND_LIMITS_STEPS
+        return lost or not np.isfinite(self.history[-1]) or len(self.history) >= max_iterations
+
+    def out_of_range(self, heat: Heat) -> bool:
+        """Whether the film left the range of temperatures, for good."""
+        return self.beyond >= BEYOND_LIMITS_STEPS or _beyond_limits(heat.temperature)
+
+    def _stagnates(self) -> bool:
+        """Whether the last iterations brought little against the best before them."""
+        recent = self.history[-STAGNATION:]
+        return min(recent) > 0.5 * min(self.history[:-STAGNATION])
 
 
-def _bush_of(problem: FilmProblem) -> BushConduction | None:
-    if problem.thermal.bush is not BushModel.CONDUCTION:
-        return None
-    return BushConduction.of(problem)
+def _beyond_limits(temperature: Array) -> bool:
+    low, high = TEMPERATURE_LIMITS
+    return bool(temperature.min() <= low + 1.0 or temperature.max() >= high - 1.0)
 
 
-def _through_energy(
+def _apply(
     problem: FilmProblem,
-    energy: EnergyProblem,
-    viscosity: Array,
+    walls: Walls,
+    position: Position,
     heat: Heat,
-    inlet: Array,
-    bush: BushConduction | None,
+    progress: _Progress,
     leaving: Array | None,
-) -> tuple[Heat, Array]:
-    """New temperatures of film, bore and shaft from the energy equation and the walls."""
-    walls = wall_temperatures(problem.thermal, heat.bush, heat.shaft)
+) -> _Step:
+    """Apply the fixed point's map once."""
+    viscosity = problem.lubricant.law.viscosity(heat.temperature)
+    layers = layer_integrals(viscosity)
+    state = film_state(problem, position, layers, start=progress.guess, frozen=progress.kept)
+    energy = energy_problem(problem, state)
+    inlet = inlet_temperatures(problem, energy, heat.temperature)
     temperature = heat.temperature.copy()
     # A film that feeds itself is marched round several times; else the fixed point does the rest.
     passes = 3 if problem.thermal.inlet is InletModel.PERIODIC else 1
-    _, leaving = march(energy, viscosity, walls, inlet, temperature, passes=passes, leaving=leaving)
-    shaft, bore = heat.shaft, heat.bush
-    if problem.thermal.shaft is ShaftModel.INSULATED:
-        conductance = _film_conductance(energy)
-        if conductance > 0.0:  # a film that has run dry heats no shaft
-            shaft += heat_to_shaft(energy, temperature, shaft) / conductance
-    if problem.thermal.bush is BushModel.INSULATED:
-        bore = temperature[:, :, 0].copy()
-    elif bush is not None:
-        bore = bush.respond(
-            heat_to_bush(energy, temperature, walls), bore, energy, problem.topology.area
-        )
-    return Heat(temperature, bore, shaft), leaving
+    bounds = WallTemperatures(heat.bush, heat.shaft, walls.bush.insulated)
+    _, leaving = march(
+        energy, viscosity, bounds, inlet, temperature, passes=passes, leaving=leaving
+    )
+    bush, shaft = FilmContact.bush(energy, temperature), FilmContact.shaft(energy, temperature)
+    mapped = Heat(
+        temperature,
+        walls.bush.respond(heat.bush, bush),
+        float(walls.shaft.respond(np.array(heat.shaft), shaft)),
+    )
+    change = _change(problem, heat, mapped)
+    passed = float(np.sum(walls.bush.exchange(bush) * np.abs(mapped.bush - heat.bush)))
+    passed += float(walls.shaft.exchange(shaft) * abs(mapped.shaft - heat.shaft))
+    made = dissipated_power(energy)
+    residual = max(change, HEAT_WEIGHT * passed / made if made > 0.0 else 0.0)
+    return _Step(state, viscosity, energy, inlet, leaving, mapped, residual)
 
 
-def _film_conductance(energy: EnergyProblem) -> float:
-    """Conductance between the film's bulk and a wall, over the meshed part [W/K].
+def _change(problem: FilmProblem, heat: Heat, mapped: Heat) -> float:
+    """Return the largest change of log viscosity anywhere, as the oil thins fastest.
 
-    A few times k area/h, a developing film's; only the speed of convergence depends on it.
+    An oil that does not thin, or hardly warms, still has a temperature to settle: its change counts
+    too, relative to the field's spread.
     """
-    layers = energy.layers.pressure_share.shape[2]
-    return float(8.0 * energy.conductance.sum() / layers)
+    coldest, hottest = float(mapped.temperature.min()), float(mapped.temperature.max())
+    change = max(
+        float(np.abs(mapped.temperature - heat.temperature).max()),
+        float(np.abs(mapped.bush - heat.bush).max()),
+        abs(mapped.shaft - heat.shaft),
+    )
+    near = problem.lubricant.law.viscosity(np.array([coldest, coldest + 1e-3]))
+    thinning = float(np.log(near[0] / near[1])) / 1e-3
+    return change * max(thinning, SPREAD_WEIGHT / max(hottest - coldest, SMALLEST_SPREAD))
+
+
+def _balance(problem: FilmProblem, walls: Walls, heat: Heat, step: _Step) -> HeatBalance:
+    return heat_balance(problem, step.energy, heat, walls, step.inlet, step.leaving)
+
+
+def _unsettled(residual: float, tolerance: float, off: float, force_tolerance: float) -> str:
+    """Say which of temperature and force has not settled; empty if both have."""
+    if not residual < tolerance:
+        return f"the temperatures still change (log viscosity by {residual:.1e} an iteration)"
+    if not off < force_tolerance:
+        return f"the force is off by {off:.1e} of the load"
+    return ""
+
+
+def _unbalanced(balance: HeatBalance) -> str:
+    """Say how much heat is unaccounted for; empty if that is within the tolerance."""
+    allowed = BALANCE_TOLERANCE * balance.dissipation + BALANCE_ROUNDING * balance.turnover
+    if abs(balance.remainder) <= allowed:
+        return ""
+    return f"{abs(balance.imbalance):.2%} of the dissipated heat is unaccounted for"
+
+
+def _packed(heat: Heat, position: Position, clearance: float) -> Array:
+    """Return all unknowns in one flat array, the position weighing as much as the whole field."""
+    weight = _position_weight(heat, clearance)
+    tail = [heat.shaft, *(weight * q for q in position)]
+    return np.concatenate([heat.temperature.ravel(), heat.bush.ravel(), tail])
+
+
+def _unpacked(packed: Array, like: Heat, count: int, clearance: float) -> tuple[Heat, Position]:
+    """Reverse `_packed` for `count` displacements; temperatures are kept within their limits."""
+    films, bore = like.temperature.size, like.bush.size
+    np.clip(packed[:-count], *TEMPERATURE_LIMITS, out=packed[:-count])
+    heat = Heat(
+        temperature=packed[:films].reshape(like.temperature.shape),
+        bush=packed[films : films + bore].reshape(like.bush.shape),
+        shaft=float(packed[films + bore]),
+    )
+    weight = _position_weight(like, clearance)
+    return heat, (float(packed[-2]) / weight, float(packed[-1]) / weight)
+
+
+def _position_weight(heat: Heat, clearance: float) -> float:
+    return POSITION_WEIGHT * math.sqrt(heat.temperature.size) / clearance

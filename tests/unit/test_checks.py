@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from rotorsim.bearing.checks import derived_numbers, regime_warnings, temperature_coefficient
-from rotorsim.bearing.operating_point import HeatBalance
+from rotorsim.film.heat import HeatBalance
 from rotorsim.model import (
     Bearing,
     BushModel,

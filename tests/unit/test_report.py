@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 from scenario_texts import BEARING, CONSTANT_OIL
 
-from rotorsim.bearing.operating_point import HeatBalance, OperatingPoint
+from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.files.scenario import Scenario
+from rotorsim.film.heat import HeatBalance
 from rotorsim.machine.map import stability_map
 from rotorsim.orbit import Orbit, OrbitStatus
 from rotorsim.show.main_job import Results

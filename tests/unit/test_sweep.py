@@ -17,13 +17,13 @@ import numpy as np
 import pytest
 
 from rotorsim.bearing.operating_point import (
-    HeatBalance,
     OperatingPoint,
     point_from_dict,
     point_to_dict,
     strict_json,
 )
 from rotorsim.errors import InputError
+from rotorsim.film.heat import HeatBalance
 from rotorsim.model import (
     Bearing,
     Case,

@@ -1,0 +1,226 @@
+"""The two walls of the film, bush and shaft: their temperatures, and the heat they take.
+
+One object per wall, chosen once by name (`choose_walls`). The film meets a wall through a
+`FilmContact`; the wall answers with its next surface temperature, and with the heat it takes at a
+given one. The walls below answer in steady state. A wall that stores heat is the same protocol: an
+implicit time step is one more such object, made from the wall's state at the step's beginning and
+the step's length, and the film's iteration does not see the difference.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..model import BushModel, ShaftModel
+from .bush import BushOperator, kept_operator
+from .energy import EnergyProblem
+from .problem import FilmProblem
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FilmContact:
+    """The film as one of its walls meets it.
+
+    Attributes
+    ----------
+    film : (n, m) array
+        Temperature of the layer next to the wall [K].
+    bulk : (n, m) array
+        Conductance k A/h of the whole film's thickness, by the oil in it [W/K].
+    layers : int
+        Layers across the film; the wall lies half a layer from the first centre.
+    area : (n, m) array
+        [m2]
+    """
+
+    film: Array
+    bulk: Array
+    layers: int
+    area: Array
+
+    @classmethod
+    def bush(cls, energy: EnergyProblem, temperature: Array) -> FilmContact:
+        """Return the contact with the bush of a film at `temperature`, (n, m, k) [K]."""
+        return cls._of(energy, temperature[:, :, 0])
+
+    @classmethod
+    def shaft(cls, energy: EnergyProblem, temperature: Array) -> FilmContact:
+        """Return the contact with the shaft."""
+        return cls._of(energy, temperature[:, :, -1])
+
+    @classmethod
+    def _of(cls, energy: EnergyProblem, film: Array) -> FilmContact:
+        layers = energy.layers.pressure_share.shape[2]
+        return cls(film, energy.conductance / layers, layers, energy.dx[:, None] * energy.dy)
+
+    def heat(self, wall: Array | float) -> Array:
+        """Return the heat that each cell gives to a wall at temperature `wall` [W], (n, m)."""
+        return 2.0 * self.layers * self.bulk * (self.film - wall)
+
+
+@dataclass(frozen=True)
+class Wall(ABC):
+    """One wall of the film. The bush's temperature is (n, m), the shaft's a single one.
+
+    Attributes
+    ----------
+    first : float
+        First guess of the surface temperature, the truth where it is given [K].
+    insulated : bool
+        Whether no heat passes anywhere.
+    """
+
+    first: float
+    insulated: ClassVar[bool] = False
+
+    def start(self, shape: tuple[int, ...]) -> Array:
+        """Return the surface temperature to begin with [K]."""
+        return np.full(shape, self.first)
+
+    def heat(self, temperature: Array | float, contact: FilmContact, /) -> Array:
+        """Return the heat that the wall takes from each cell [W], (n, m)."""
+        return contact.heat(temperature)
+
+    @abstractmethod
+    def respond(self, temperature: Array, contact: FilmContact, /) -> Array:
+        """Return the surface temperature that answers the film, the old one given [K]."""
+
+    def exchange(self, _contact: FilmContact, /) -> Array | float:
+        """Return how the heat follows a change of the surface temperature [W/K], estimated."""
+        return 0.0
+
+
+@dataclass(frozen=True)
+class FixedWall(Wall):
+    """A wall at a given temperature, whatever heat it takes."""
+
+    def respond(self, temperature: Array, _contact: FilmContact, /) -> Array:
+        """Return the given temperature."""
+        return temperature
+
+
+@dataclass(frozen=True)
+class InsulatedWall(Wall):
+    """A wall that takes no heat anywhere and has the film's temperature."""
+
+    insulated = True
+
+    def heat(self, _temperature: Array | float, contact: FilmContact, /) -> Array:
+        """Return zeros."""
+        return np.zeros(contact.film.shape)
+
+    def respond(self, _temperature: Array, contact: FilmContact, /) -> Array:
+        """Return the film's temperature."""
+        return contact.film.copy()
+
+
+@dataclass(frozen=True)
+class IsothermalShaft(Wall):
+    """A shaft of one temperature that takes no net heat: it turns fast against its inertia."""
+
+    def respond(self, temperature: Array, contact: FilmContact, /) -> Array:
+        """Return the temperature at which the film's net heat would vanish."""
+        conductance = self.exchange(contact)
+        if not conductance > 0.0:  # a film that has run dry heats no shaft
+            return temperature
+        return temperature + self.heat(temperature, contact).sum() / conductance
+
+    def exchange(self, contact: FilmContact, /) -> float:
+        """Return a few times k A/h, a developing film's; only the convergence depends on it."""
+        return float(8.0 * contact.bulk.sum())
+
+
+@dataclass(frozen=True)
+class ConductingBush(Wall):
+    """A bush that conducts the heat from its bore to surroundings at `ambient` [K]."""
+
+    operator: BushOperator
+    ambient: float
+
+    @classmethod
+    def of(cls, problem: FilmProblem) -> ConductingBush:
+        """Build the bush of a film problem; the operators of recent meshes are kept.
+
+        Raises
+        ------
+        InputError
+            The bearing has no `bush_outer_radius`.
+        """
+        mesh, thermal, bearing = problem.mesh, problem.thermal, problem.bearing
+        outer = bearing.bush_outer_radius
+        if outer is None:
+            raise InputError(
+                "is missing: conduction in the bush needs it; give it in metres, for example "
+                f"bush_outer_radius={1.5 * bearing.journal_radius:.3g}, or another bush model",
+                key="bearing.bush_outer_radius",
+            )
+        transfer = thermal.bush_heat_transfer
+        operator = kept_operator(
+            mesh.theta_faces.tobytes(),
+            mesh.y_faces.tobytes(),
+            (bearing.journal_radius, outer),
+            problem.settings.mesh.bush_radial,
+            thermal.bush_conductivity,
+            transfer,
+            (0.0 if mesh.half else transfer, transfer),
+        )
+        return cls(thermal.supply_temperature, operator, thermal.ambient_temperature)
+
+    def respond(self, temperature: Array, contact: FilmContact, /) -> Array:
+        """Return the bore's temperature that answers the film's heat at the old one.
+
+        The film is taken to answer a change of the bore with a uniform conductance (a Robin
+        condition): handing over the flux itself would not converge, since the surroundings take
+        far less heat per degree than the film brings.
+        """
+        conductance = float(self.exchange(contact).sum()) / float(contact.area.sum())
+        if not conductance > 0.0:
+            return temperature
+        flux = self.heat(temperature, contact) / contact.area
+        reference = temperature - self.ambient + flux / conductance
+        return self.ambient + self.operator.robin_rise(reference, conductance)
+
+    def exchange(self, contact: FilmContact, /) -> Array:
+        """Return 2 k A/h of every cell."""
+        return 2.0 * contact.bulk
+
+
+@dataclass(frozen=True)
+class Walls:
+    """Both walls of a film."""
+
+    bush: Wall
+    shaft: Wall
+
+
+_BUSHES: dict[BushModel, Callable[[FilmProblem], Wall]] = {
+    BushModel.AMBIENT: lambda problem: FixedWall(problem.thermal.ambient_temperature),
+    BushModel.INSULATED: lambda problem: InsulatedWall(problem.thermal.supply_temperature),
+    BushModel.CONDUCTION: ConductingBush.of,
+}
+_SHAFTS: dict[ShaftModel, Callable[[FilmProblem], Wall]] = {
+    ShaftModel.AMBIENT: lambda problem: FixedWall(problem.thermal.ambient_temperature),
+    ShaftModel.INSULATED: lambda problem: IsothermalShaft(problem.thermal.supply_temperature),
+    ShaftModel.GIVEN: lambda problem: FixedWall(problem.thermal.shaft_temperature or 0.0),
+}
+
+
+def choose_walls(problem: FilmProblem) -> Walls:
+    """Return the walls that the problem's thermal settings name.
+
+    Raises
+    ------
+    InputError
+        The bush conducts and the bearing has no `bush_outer_radius`.
+    """
+    thermal = problem.thermal
+    return Walls(_BUSHES[thermal.bush](problem), _SHAFTS[thermal.shaft](problem))
