@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Bearing, Case, EccentricityTarget, LoadTarget
+from ..model import Bearing, Case, EccentricityTarget, LoadTarget, ThermalModel
 from ..status import SolveStatus
-from .banded import NoFilmError
+from .banded import NoFilmError, SingularFilmError
 from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
+from .first_position import first_positions
 from .geometry import evaluation_points, thinnest_film
 from .heat import Heat
 from .layers import isoviscous_layers
@@ -113,7 +115,32 @@ def solve_film(case: Case, speed: float, *, initial: WarmStart | None = None) ->
     """The film of `case` at `speed` [rad/s], at the eccentricity or under the load it asks for."""
     if case.bearing.is_plain and case.bearing.is_symmetric:
         return _solve_plain(case, speed, initial)
-    return _solve_general(case, speed, initial)
+    solution = _solve_general(case, speed, initial)
+    lost = (SolveStatus.STARVED, SolveStatus.NO_EQUILIBRIUM)
+    if solution.thermal is None:
+        lost = (*lost, SolveStatus.NOT_CONVERGED)
+    return _from_elsewhere(case, speed, solution) if solution.status in lost else solution
+
+
+def _from_elsewhere(case: Case, speed: float, failed: FilmSolution) -> FilmSolution:
+    """Solve again from positions all over the clearance; `failed` if none leads to the load."""
+    isothermal = replace(case, thermal=replace(case.thermal, model=ThermalModel.ISOTHERMAL))
+    positions = first_positions(case, speed)
+    for position in positions:
+        warm = WarmStart(position, None, failed.state.solution.full[:0])
+        with suppress(NoFilmError, SingularFilmError):
+            solution = _solve_general(isothermal, speed, warm)
+            if solution.status is SolveStatus.CONVERGED:
+                if failed.thermal is None:
+                    return solution
+                return _solve_general(case, speed, solution.warm_start)
+    if positions and failed.status is SolveStatus.STARVED:
+        message = (
+            "the film carries something, but at no journal position tried does its force point "
+            "along the load: a groove under the load line leaves no film there"
+        )
+        return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=message)
+    return failed
 
 
 def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
@@ -334,9 +361,11 @@ def _conclude(
     status, message = SolveStatus.CONVERGED, ""
     if not film.state.solution.pressure.max() > 0.0 or not film.state.solution.full.any():
         status = SolveStatus.STARVED
-        message = (
-            "no film forms: the pressure is nowhere above zero. A mass-conserving film needs a "
-            'supply: a groove, or inception = "max_film"'
+        message = "no film forms: the pressure is nowhere above zero. " + (
+            "The oil of the grooves does not fill the bearing anywhere behind them: move a groove "
+            "further ahead of the load line, or raise its supply pressure"
+            if film.state.operator.fixed.any()
+            else 'A mass-conserving film needs a supply: a groove, or inception = "max_film"'
         )
     elif search is not None and search.unreachable:
         status = SolveStatus.NO_EQUILIBRIUM
