@@ -15,6 +15,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from .errors import InputError
+from .unit_spellings import as_force, readings
 
 if TYPE_CHECKING:
     import pint
@@ -75,41 +76,12 @@ QUANTITIES = {kind.name: kind for kind in _KINDS}
 
 _NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)(?![\d.,_])\s*", re.ASCII)
 _COMMA = re.compile(r"\s*[+-]?\d+,\d", re.ASCII)
-_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*|\*\*|[*/^()]|[+-]?[0-9]+")
-_POWER_WITHOUT_SIGN = re.compile(r"\b(m|mm|cm|um|in|ft|s)([234])\b")
-_SYMBOLS = (
-    ("⁻¹", "^-1"),
-    ("⁻²", "^-2"),
-    ("²", "^2"),
-    ("³", "^3"),
-    ("°C", "degC"),
-    ("°F", "degF"),
-    ("°", "deg"),
-    ("µ", "u"),
-    ("μ", "u"),
-    ("·", "*"),
-    ("⋅", "*"),
-    ("×", "*"),
-    ("**", "^"),
-)
-_OWN_NAMES = {
-    "mil": "thou",
-    "mils": "thou",
-    "Hz": "revolutions_per_second",
-    "hertz": "revolutions_per_second",
-    "rev": "revolution",
-    "revs": "revolution",
-}
-"""Names that mean something else to Pint (an angle, 1/s, nothing) than on a bearing's drawing."""
+_TOKEN = re.compile(r"[A-Za-z_][A-Za-z0-9_]*|[*/^()]|[+-]?[0-9]+")
 _HINTS = {
-    ("C", "temperature"): 'Celsius is written "degC"',
-    ("F", "temperature"): 'Fahrenheit is written "degF"',
     ("kg", "force"): 'that is a mass; write "N" or "kgf"',
     ("t", "force"): "that is a mass; its weight is 9.81 kN for each tonne",
     ("tonne", "force"): "that is a mass; its weight is 9.81 kN for each tonne",
     ("g", "force"): 'that is a mass; write "N"',
-    ("lb", "force"): 'that is a mass; write "lbf"',
-    ("lbs", "force"): 'that is a mass; write "lbf"',
     ("kHz", "speed"): 'write "Hz" or "rpm"',
 }
 _GAUGE = re.compile(
@@ -154,7 +126,8 @@ def parse_quantity(
     -----
     A temperature has an offset ("40 degC" is 313.15 K), a temperature difference has none: in
     products and quotients degC means the difference ("J/(kg*degC)"). "mil" is a thousandth of an
-    inch, "Hz" counts revolutions, "reyn" is lbf s/in^2.
+    inch, "Hz" counts revolutions, "reyn" is lbf s/in^2, "lb" is the mass or the force that the kind
+    of quantity needs. Other spellings: `rotorsim.unit_spellings`.
 
     Examples
     --------
@@ -173,6 +146,50 @@ def parse_quantity(
         raise InputError(
             f'{refusal}; write for example "{example}"', source=source, key=key, value=text
         ) from None
+
+
+def parse_unit(
+    text: str,
+    kind: str,
+    *,
+    example: str | None = None,
+    key: str | None = None,
+    source: str | None = None,
+) -> tuple[float, float]:
+    """Read a unit that stands alone, in a table's header for example.
+
+    Parameters
+    ----------
+    text, kind, key, source
+        As in `parse_quantity`.
+    example : str, optional
+        Valid unit to show in messages; by default the kind's SI unit.
+
+    Returns
+    -------
+    offset, factor : float
+        SI value = offset + factor * number; the offset is 0 but for temperatures.
+
+    Raises
+    ------
+    InputError
+        Not a unit of that kind.
+
+    Examples
+    --------
+    >>> parse_unit("N/µm", "stiffness")
+    (0.0, 1000000.0)
+    """
+    wanted = QUANTITIES[kind]
+    try:
+        if not text.strip() or len(text) > MAX_TEXT:
+            raise _Refusal(f"must be a unit of {kind}")
+        return _conversion(text.strip(), wanted)
+    except _Refusal as refusal:
+        raise InputError(
+            f'{refusal}; write for example "{example or wanted.unit}"',
+            source=source, key=key, value=text[:MAX_TEXT],
+        ) from None  # fmt: skip
 
 
 class _Refusal(Exception):
@@ -221,9 +238,26 @@ def _parse(text: object, kind: Kind) -> float:
 @lru_cache(maxsize=512)
 def _conversion(text: str, kind: Kind) -> tuple[float, float]:
     """``(offset, factor)``: SI value = offset + factor * number."""
+    refusals: list[_Refusal] = []
+    found: list[tuple[float, float]] = []
+    for reading in readings(text, kind.name):
+        try:
+            found.append(_converted(reading, text, kind))
+        except _Refusal as refusal:
+            refusals.append(refusal)
+    if not found:
+        raise refusals[0]
+    offset, factor = found[0]
+    if any(not math.isclose(factor, other, rel_tol=1e-12) for _, other in found):
+        raise _Refusal(f'"{text}" can be read in two ways, set brackets')
+    return offset, factor
+
+
+def _converted(reading: str, text: str, kind: Kind) -> tuple[float, float]:
+    """Conversion of one `reading` of the unit written as `text`."""
     registry = _registry()
     try:
-        unit = registry.parse_units(_checked_unit_text(text), as_delta=True)
+        unit = registry.parse_units(_checked_unit_text(reading, text), as_delta=True)
         given = registry.Quantity(1.0, unit)
         if given.dimensionality != _dimensionality(kind):
             raise _Refusal(f'"{text}" is not a unit of {kind.name}{_hint(text, kind)}')
@@ -250,17 +284,11 @@ def _to_si(number: float, unit: pint.Unit, kind: Kind) -> float:
     return float(_registry().Quantity(number, unit).to(kind.unit).magnitude)
 
 
-def _checked_unit_text(text: str) -> str:
-    """Rewrite unit text for Pint: names, products, quotients and one-digit powers only."""
+def _checked_unit_text(reading: str, text: str) -> str:
+    """Return `reading` if it holds names, products, quotients and one-digit powers only."""
     refusal = _Refusal(f'does not hold a readable unit ("{text}")')
-    for symbol, plain in _SYMBOLS:
-        text = text.replace(symbol, plain)
-    text = _POWER_WITHOUT_SIGN.sub(r"\1^\2", text)
-    if text.startswith("/"):
-        text = "1" + text
-    text = re.sub(r"[A-Za-z_]\w*", lambda name: _OWN_NAMES.get(name[0], name[0]), text)
-    tokens = _TOKEN.findall(text)
-    if "".join(tokens) != re.sub(r"\s+", "", text) or tokens.count("(") != tokens.count(")"):
+    tokens = _TOKEN.findall(reading)
+    if "".join(tokens) != re.sub(r"\s+", "", reading) or tokens.count("(") != tokens.count(")"):
         raise refusal
     for before, token, after in zip(["", *tokens], tokens, [*tokens[1:], ""], strict=False):
         if token[-1].isdigit() and not token[0].isalpha():
@@ -269,7 +297,18 @@ def _checked_unit_text(text: str) -> str:
                 raise refusal
         elif token == "^" and not (after and after[-1].isdigit() and not after[0].isalpha()):
             raise refusal
-    return text
+        elif token[0].isalpha():
+            _check_name(token)
+    return reading
+
+
+def _check_name(name: str) -> None:
+    """Refuse tons of two sizes, and a symbol with a plural s, which Pint takes Ns for."""
+    if name in ("ton", "tons"):
+        raise _Refusal(f'"{name}" may be 1000 kg ("t") or 2000 lb ("short_ton")')
+    for _, unit, suffix in _registry().parse_unit_name(name):
+        if suffix and not name.removesuffix(suffix).endswith(unit):
+            raise _Refusal(f'holds no known unit ("{name}")')
 
 
 def _check_meaning(unit: pint.Unit, text: str, kind: Kind) -> None:
@@ -294,12 +333,23 @@ def _unknown_unit(text: str, error: Exception) -> str:
 
 def _hint(text: str, kind: Kind) -> str:
     hint = _HINTS.get((text, kind.name))
+    force = as_force(text)
+    if hint is None and force != text and _is_unit(force, kind):
+        hint = f'kg is a mass; write "{force}"'
     pressure = _GAUGE.fullmatch(text) if kind.name == "pressure" else None
     if pressure is not None:
         hint = f'pressures are gauge pressures, above the ambient; write "{pressure["unit"]}"'
         if pressure["zero"].lower().startswith("a"):
             hint += " and subtract the ambient pressure"
     return f" ({hint})" if hint else ""
+
+
+def _is_unit(text: str, kind: Kind) -> bool:
+    try:
+        _conversion(text, kind)
+    except _Refusal:
+        return False
+    return True
 
 
 @cache

@@ -201,9 +201,9 @@ BAD = [
     ('ambient_temperature = "40 degC"', "", "thermal.ambient_temperature", ["missing"]),
     (
         'ambient_temperature = "40 degC"',
-        'ambient_temperature = "40 C"',
+        'ambient_temperature = "40 cel"',
         "thermal.ambient_temperature",
-        ["40 C", "degC"],
+        ["40 cel", "degC"],
     ),
     (
         'ambient_temperature = "40 degC"',
