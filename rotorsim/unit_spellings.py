@@ -73,6 +73,8 @@ _OF_KIND = {
     "acceleration": {"g": "standard_gravity", "G": "standard_gravity"},
 }
 """Names that mean something for one kind of quantity only."""
+_BELOW = re.compile(r"/[^/()]*[A-Za-z0-9]\s*[-\s]\s*[A-Za-z]")
+"""A stroke, and behind it a product without a sign or with a hyphen: all of it is below."""
 _PER_MINUTE = re.compile(r"(1\s*)?/\s*min(ute)?|min\^-1", re.IGNORECASE)
 _POUNDS = re.compile(r"\b(lb|pounds?)\b")
 _KILOGRAM = re.compile(r"\bkg\b")
@@ -103,9 +105,9 @@ def readings(text: str, kind: str) -> list[str]:
     for one in tuple(found):
         if _MILLIKELVIN.search(one):  # "W/mK"
             found.append(_MILLIKELVIN.sub("m*K", one))
-    # "W/m K": all that follows the stroke is meant to stand under it
-    found += [_under_one_stroke(one) for one in found if _has_open_denominator(one)]
-    return found
+    # "W/m·K": all that follows the stroke may be meant to stand under it
+    below = [_under_one_stroke(one) for one in found if _has_open_denominator(one)]
+    return below if below and _BELOW.search(_plain_signs(text)) else found + below
 
 
 def as_force(text: str) -> str:
@@ -113,8 +115,12 @@ def as_force(text: str) -> str:
     return _KILOGRAM.sub("kgf", text)
 
 
+def _plain_signs(text: str) -> str:
+    return unicodedata.normalize("NFKC", text.translate(_BEFORE)).translate(_SIGNS)
+
+
 def _rewritten(text: str, kind: str) -> str:
-    text = unicodedata.normalize("NFKC", text.translate(_BEFORE)).translate(_SIGNS)
+    text = _plain_signs(text)
     text = _DEGREES.sub(r" deg\1", text.replace("**", "^")).replace("°", "deg").strip()
     if kind == "speed" and _PER_MINUTE.fullmatch(_POWER.sub(r"^\1", text)):
         return "revolution/minute"
@@ -126,7 +132,8 @@ def _rewritten(text: str, kind: str) -> str:
 
 def _named(name: str, kind: str) -> str:
     meant = _OF_KIND.get(kind, {})
-    for one in (name, name.lower()):
+    other_case = name.lower() if name.isupper() or name.istitle() else name
+    for one in (name, other_case):
         if one in meant:
             return meant[one]
     name = _ANY_CASE.get(name.casefold(), name)

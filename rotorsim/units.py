@@ -304,6 +304,8 @@ def _checked_unit_text(reading: str, text: str) -> str:
 
 def _check_name(name: str) -> None:
     """Refuse tons of two sizes, and a symbol with a plural s, which Pint takes Ns for."""
+    if name == "u":  # Pint's atomic mass unit
+        raise _Refusal('holds no known unit ("u")')
     if name in ("ton", "tons"):
         raise _Refusal(f'"{name}" may be 1000 kg ("t") or 2000 lb ("short_ton")')
     for _, unit, suffix in _registry().parse_unit_name(name):
