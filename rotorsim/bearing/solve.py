@@ -13,9 +13,8 @@ from ..arguments import check_number, refuse_path
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import film_flow
-from ..film.following import following_stiffness
 from ..film.heat import HeatBalance, with_groove_oil
-from ..film.linearized import linearize
+from ..film.linearization import following_stiffness, linearize
 from ..film.losses import friction_force, peak, side_flow
 from ..film.solution import FilmSolution, WarmStart, solve_film
 from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
@@ -143,15 +142,15 @@ def operating_point(
 ) -> OperatingPoint:
     """Results of a solved film, turned into the load frame."""
     problem, state = solution.problem, solution.state
-    stiffness, damping = linearize(state.operator, state.solution, problem.mesh.multiplicity)
+    stiffness, damping = linearize(state)
     status, message = solution.status, solution.message
     if solution.thermal is not None and case.film.viscosity_response is FOLLOWING:
-        stiffness, settled = following_stiffness(problem, solution.thermal)
+        stiffness, settled = following_stiffness(solution.thermal)
         if not settled and status is SolveStatus.CONVERGED:
             status, message = SolveStatus.NOT_CONVERGED, "a displaced film did not converge"
     turn = _rotation(solution.frame)
     stiffness, damping = turn @ stiffness @ turn.T, turn @ damping @ turn.T
-    center = turn @ np.array(state.position)
+    center = turn @ state.displacement
     load = float(np.hypot(*state.force))
     clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
     viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
@@ -231,8 +230,8 @@ def min_film_thickness(solution: FilmSolution) -> float:
     """Smallest film thickness [m], lands only."""
     bearing, state = solution.problem.bearing, solution.state
     if bearing.is_plain and bearing.is_symmetric:
-        return bearing.radial_clearance - math.hypot(*state.position)
-    return state.thickness.minimum(~state.operator.fixed)
+        return bearing.radial_clearance - math.hypot(*state.displacement)
+    return state.min_thickness
 
 
 def _rotation(angle: float) -> Array:
@@ -258,7 +257,7 @@ def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float
         supply = solution.problem.thermal.supply_temperature
         return supply, supply
     film = ~state.operator.fixed
-    weight = (state.thickness.center * state.operator.area * fraction * film)[:, :, None]
+    weight = (state.center_thickness * state.operator.area * fraction * film)[:, :, None]
     temperature = thermal.heat.temperature
     total = float(np.sum(weight)) * temperature.shape[2]
     mean = float(np.sum(weight * temperature)) / total if total > 0.0 else math.nan
@@ -307,7 +306,7 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
         theta=mesh.theta + solution.frame,
         y=mesh.whole_y,
         z=(np.arange(layers) + 0.5) / layers,
-        film_thickness=whole(state.thickness.center),
+        film_thickness=whole(state.center_thickness),
         pressure=whole(state.solution.pressure),
         liquid_fraction=whole(fraction),
         temperature=whole(temperature),

@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .flow import FilmFlow
-from .geometry import Thickness
 from .kernels import kernel
 from .layers import LayerIntegrals
 from .operator import FilmOperator
@@ -82,7 +81,7 @@ class EnergyProblem:
 
 def dissipation(
     operator: FilmOperator,
-    film: Thickness,
+    thickness: Array,
     layers: LayerIntegrals,
     flow: FilmFlow,
     surface_speed: float,
@@ -101,7 +100,7 @@ def dissipation(
     heating = np.zeros((3, *operator.area.shape))
     _heating(
         operator.interior, operator.conductance, operator.face_thickness, operator.spacing,
-        operator.fixed, operator.area, operator.dx, operator.dy, film.center, layers.f0,
+        operator.fixed, operator.area, operator.dx, operator.dy, thickness, layers.f0,
         flow.step, flow.liquid_fraction, surface_speed, heating,
     )  # fmt: skip
     return heating

@@ -8,17 +8,16 @@ xi = ln(eps/(1 - eps)), in which the logarithm of the load is nearly a straight 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .linearized import stiffness_matrix
-from .state import FilmState
+from .geometry import FilmGeometry
+from .linearization import stiffness_matrix
+from .problem import FilmState
 
 Array = NDArray[np.float64]
-Position = tuple[float, float]
 
 ECCENTRICITY_LIMITS = (1e-5, 0.9995)
 """Eccentricity ratios between which an equilibrium is sought."""
@@ -32,18 +31,17 @@ class PlainSearch:
 
     load: float
     clearance: float
-    multiplicity: float
     unreachable: bool = False
 
-    def __call__(self, state: FilmState) -> tuple[Position, float]:
+    def __call__(self, state: FilmState) -> tuple[Array, float]:
         """Newton's next position, and how far the force is off, relative to the load."""
-        eps = state.position[0] / self.clearance
+        eps = float(state.displacement[0]) / self.clearance
         xi = math.log(eps / (1.0 - eps))
         carried = float(np.hypot(*state.force))
         if not carried > 0.0:
             self.unreachable = eps >= ECCENTRICITY_LIMITS[1] * (1.0 - 1e-9)
             return self._at(xi + 1.0), 1.0
-        stiffness = stiffness_matrix(state.operator, state.solution, self.multiplicity)
+        stiffness = stiffness_matrix(state)
         # dW/de from dF = -K de and W = |F|
         growth = -float(state.force @ stiffness[:, 0]) / carried
         slope = max(growth * self.clearance * eps * (1.0 - eps) / carried, 0.3)
@@ -56,55 +54,58 @@ class PlainSearch:
         self.unreachable = too_heavy or too_light
         return self._at(xi + max(-2.0, min(2.0, step))), abs(off)
 
-    def allowed(self, old: Position, new: Position) -> Position:
+    def allowed(self, old: Array, new: Array) -> Array:
         """Keep a mixed step within the clearance and near the old position."""
         lowest, highest = ECCENTRICITY_LIMITS
-        left = self.clearance - old[0]
-        size = min(max(new[0], 0.5 * old[0]), self.clearance - 0.4 * left)
-        return min(max(size, lowest * self.clearance), highest * self.clearance), 0.0
+        left = self.clearance - float(old[0])
+        size = min(max(float(new[0]), 0.5 * float(old[0])), self.clearance - 0.4 * left)
+        size = min(max(size, lowest * self.clearance), highest * self.clearance)
+        return np.array([size, 0.0])
 
-    def _at(self, xi: float) -> Position:
+    def _at(self, xi: float) -> Array:
         lowest, highest = ECCENTRICITY_LIMITS
-        return self.clearance * min(max(1.0 / (1.0 + math.exp(-xi)), lowest), highest), 0.0
+        eps = min(max(1.0 / (1.0 + math.exp(-xi)), lowest), highest)
+        return np.array([self.clearance * eps, 0.0])
 
 
 @dataclass
 class LoadSearch:
-    """Position at which any film carries `load`, a force [N] on the journal: damped Newton."""
+    """Displacements at which any film carries the generalised forces `load`: damped Newton."""
 
     load: Array
+    """Forces on the displacements, (q,) [N]."""
     clearance: float
-    multiplicity: float
-    thinnest: Callable[[Position], float]
-    """Smallest film thickness [m] at a position; not positive outside the bore."""
+    geometry: FilmGeometry
     unreachable: bool = False
 
-    def __call__(self, state: FilmState) -> tuple[Position, float]:
-        """Newton's next position, and how far the force is off, relative to the load."""
-        missing = state.force + self.load
-        stiffness = stiffness_matrix(state.operator, state.solution, self.multiplicity)
-        off = float(np.hypot(*missing) / np.hypot(*self.load))
-        step = _newton_step(stiffness, missing, self.clearance)
-        position = np.array(state.position)
-        following = self.allowed(state.position, _pair(position + step))
-        pinned = self.thinnest(state.position) <= 2.0 * CLEARANCE_KEPT * self.clearance
-        self.unreachable = following == state.position or (pinned and off > 1e-3)
+    def __call__(self, state: FilmState) -> tuple[Array, float]:
+        """Newton's next displacements, and how far the force is off, relative to the load."""
+        scales = self.geometry.displacements.scales / self.clearance
+        missing = (state.force + self.load) * scales
+        off = math.hypot(*missing) / math.hypot(*(self.load * scales))
+        stiffness = stiffness_matrix(state) * scales[:, None] * scales[None, :]
+        step = scales * _newton_step(stiffness, missing, self.clearance)
+        following = self.allowed(state.displacement, state.displacement + step)
+        pinned = state.min_thickness <= 2.0 * CLEARANCE_KEPT * self.clearance
+        stays = bool(np.array_equal(following, state.displacement))
+        self.unreachable = stays or (pinned and off > 1e-3)
         return following, off
 
-    def allowed(self, old: Position, new: Position) -> Position:
+    def allowed(self, old: Array, new: Array) -> Array:
         """Shorten a step that goes too far.
 
         At most a fifth of the clearance, and never more than 0.6 of the film that is left.
         """
-        start, step = np.array(old), np.array(new) - np.array(old)
-        length = float(np.hypot(*step))
+        step = new - old
+        scales = self.geometry.displacements.scales / self.clearance
+        length = math.hypot(*(step / scales))
         scale = min(1.0, 0.2 * self.clearance / length) if length > 0.0 else 1.0
-        floor = max(0.4 * self.thinnest(old), CLEARANCE_KEPT * self.clearance)
-        while scale > 1e-4 and self.thinnest(_pair(start + scale * step)) < floor:
+        floor = max(0.4 * self.geometry.thinnest_at(old), CLEARANCE_KEPT * self.clearance)
+        while scale > 1e-4 and self.geometry.thinnest_at(old + scale * step) < floor:
             scale *= 0.7
         if scale <= 1e-4:
             return old
-        return new if scale == 1.0 else _pair(start + scale * step)
+        return new if scale == 1.0 else old + scale * step
 
 
 @dataclass
@@ -114,17 +115,16 @@ class AttitudeSearch:
     eccentricity: float
     load_angle: float
     """Direction of the load in the film frame [rad]."""
-    multiplicity: float
     unreachable: bool = False
     _last: tuple[float, float] | None = None
 
-    def __call__(self, state: FilmState) -> tuple[Position, float]:
+    def __call__(self, state: FilmState) -> tuple[Array, float]:
         """Newton's next position, and the force across the load line relative to the force."""
-        angle = math.atan2(state.position[1], state.position[0])
+        angle = math.atan2(state.displacement[1], state.displacement[0])
         size = float(np.hypot(*state.force))
         if not size > 0.0:
             return self.at(angle - 0.2), 1.0
-        stiffness = stiffness_matrix(state.operator, state.solution, self.multiplicity)
+        stiffness = stiffness_matrix(state)
         along = self.eccentricity * np.array([-math.sin(angle), math.cos(angle)])
         turn = -stiffness @ along  # dF/d(angle)
         carried = math.atan2(-state.force[1], -state.force[0])
@@ -140,13 +140,13 @@ class AttitudeSearch:
         self._last = (angle, direction)
         return self.at(angle + step), abs(direction)
 
-    def allowed(self, _old: Position, new: Position, /) -> Position:
+    def allowed(self, _old: Array, new: Array, /) -> Array:
         """Stay at the given eccentricity."""
         return self.at(math.atan2(new[1], new[0]))
 
-    def at(self, angle: float) -> Position:
-        """Position at an attitude angle [rad]."""
-        return self.eccentricity * math.cos(angle), self.eccentricity * math.sin(angle)
+    def at(self, angle: float) -> Array:
+        """Return the position at an attitude angle [rad]."""
+        return self.eccentricity * np.array([math.cos(angle), math.sin(angle)])
 
 
 def _newton_step(stiffness: Array, missing: Array, clearance: float) -> Array:
@@ -156,9 +156,6 @@ def _newton_step(stiffness: Array, missing: Array, clearance: float) -> Array:
     except np.linalg.LinAlgError:
         step = missing / max(float(np.abs(stiffness).max()), 1e-300)
     if not np.all(np.isfinite(step)):
-        step = np.array([0.1 * clearance, 0.0])
+        step = np.zeros_like(missing)
+        step[0] = 0.1 * clearance
     return np.asarray(step, dtype=float)
-
-
-def _pair(position: Array) -> Position:
-    return float(position[0]), float(position[1])

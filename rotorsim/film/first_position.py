@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ..model import Case, EccentricityTarget, LoadTarget
 from .banded import NoFilmError, SingularFilmError
-from .geometry import evaluation_points, thinnest_film
+from .geometry import FilmGeometry
 from .layers import isoviscous_layers
 from .problem import film_problem, film_state
 
@@ -72,7 +72,7 @@ def _forces(case: Case, speed: float) -> Iterator[tuple[Position, Array]]:
     )
     case = replace(case, film=replace(case.film, mesh=coarse))
     viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    for place in _places(case):
+    for place in _places(case, film_problem(case, speed, case.bearing, (0.0, 0.0)).geometry):
         problem = film_problem(case, speed, case.bearing, place)
         layers = isoviscous_layers(problem.mesh.shape, viscosity)
         with suppress(NoFilmError, SingularFilmError):
@@ -81,12 +81,8 @@ def _forces(case: Case, speed: float) -> Iterator[tuple[Position, Array]]:
                 yield place, state.force
 
 
-def _places(case: Case) -> Iterator[Position]:
+def _places(case: Case, geometry: FilmGeometry) -> Iterator[Position]:
     bearing, target = case.bearing, case.target
-    half = bearing.length / 2.0
-    around = evaluation_points(
-        bearing, np.linspace(0.0, 2.0 * math.pi, 181), np.array([-half, half])
-    )
     for angle in 2.0 * math.pi / _ANGLES * np.arange(_ANGLES):
         x, y = math.cos(angle), math.sin(angle)
         if isinstance(target, EccentricityTarget):
@@ -94,7 +90,7 @@ def _places(case: Case) -> Iterator[Position]:
             yield size * x, size * y
             continue
         reach = bearing.radial_clearance
-        while reach > 0.0 and thinnest_film(around, (reach * x, reach * y)) < 0.0:
+        while reach > 0.0 and geometry.thinnest_at(np.array([reach * x, reach * y])) < 0.0:
             reach -= 0.02 * bearing.radial_clearance
         for share in _SHARES:
             yield share * reach * x, share * reach * y

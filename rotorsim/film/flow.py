@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from .kernels import kernel
 from .layers import LayerIntegrals
 from .operator import FilmOperator, neighbour
-from .state import FilmState
+from .problem import FilmState
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -72,8 +72,9 @@ def film_flow(state: FilmState, surface_speed: float) -> FilmFlow:
         operator.spacing, operator.fixed, solution.full, solution.raw, operator.dx, operator.dy,
         step, poiseuille, shared, flux,
     )  # fmt: skip
-    if solution.liquid is not None:
-        # The rupture model conserves oil by itself: its Couette flow carries the liquid fraction.
+    if state.problem.rupture.conserves_mass:
+        # Its Couette flow carries the liquid fraction.
+        assert solution.liquid is not None
         film = ~operator.fixed
         couette = _couette_multiplier(operator, layers) * film
         flux[:2] += operator.couette * film
@@ -83,7 +84,7 @@ def film_flow(state: FilmState, surface_speed: float) -> FilmFlow:
     fraction, fresh_fraction = np.ones(shape[1:]), np.ones(shape[1:])
     _carry(
         operator.interior, operator.face_thickness, operator.couette, operator.fixed,
-        state.thickness.center, layers.g, solution.full, surface_speed, operator.dy,
+        state.center_thickness, layers.g, solution.full, surface_speed, operator.dy,
         poiseuille, couette, shared, inlet, flux, fraction, fresh_fraction,
     )  # fmt: skip
     return FilmFlow(step, poiseuille, couette, shared, inlet, flux, fraction, fresh_fraction)

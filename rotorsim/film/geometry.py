@@ -1,21 +1,37 @@
-"""Film thickness of a bore made of arcs, with the journal anywhere in it, tilted or not."""
+"""Film thickness over the generalised displacements of the walls (see docs: theory).
+
+The film thickness is h = h_0 + sum_q q s_q: what it is with every displacement zero (clearance,
+lobes, misalignment), plus each displacement q times its shape s_q(theta, y) = dh/dq. The journal's
+two translations have the shapes -cos(theta) and -sin(theta), its two rotations y sin(theta) and
+-y cos(theta). The force that the film exerts along q is Q_q = int p s_q dA.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..model import Bearing
-from .kernels import kernel
+
+if TYPE_CHECKING:
+    from .mesh import FilmMesh
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+TRANSLATIONS = ("x", "y")
+ROTATIONS = ("theta_x", "theta_y")
+"""About x and y, positive by the right hand; y is measured along the rotation vector."""
+CENTER = 0
+"""First index of fields (5, n, m): cell centre; then the west, east, south and north faces."""
 
 
 def bore_offset(bearing: Bearing, theta: Array) -> Array:
-    """What the lobes' preload adds to the film thickness of a concentric bore [m].
+    """Return what the lobes' preload adds to the film thickness of a concentric bore [m].
 
     A lobe's centre of curvature is displaced by ``preload * c`` away from the point where it comes
     nearest, so h falls by ``preload * c * cos(theta - angle)``.
@@ -36,99 +52,98 @@ def bore_offset(bearing: Bearing, theta: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Thickness:
-    """Film thickness [m] at cell centres and on faces, for one journal position.
+class Displacements:
+    """Generalised displacements of a film.
 
     Attributes
     ----------
-    center : (n, m) array
-    west : (n, m) array
-        On the first face of each cell, seen from inside it (lobes may step at a face).
-    east : (n, m) array
-        On its last face, seen from inside it.
-    south, north : (n, m) arrays
-        On its faces along the axis.
+    names : tuple of str
+    shapes : (q, 5, n, m) array
+        dh/dq at the centre and on the west, east, south and north face of each cell, seen from
+        inside the cell.
+    scales : (q,) array
+        A change of each displacement that changes h by about the clearance.
     """
 
-    center: Array
-    west: Array
-    east: Array
-    south: Array
-    north: Array
-
-    def minimum(self, cells: NDArray[np.bool_]) -> float:
-        """Smallest thickness met on any face or centre of `cells` [m]."""
-        parts = (self.center, self.west, self.east, self.south, self.north)
-        return float(min(part[cells].min() for part in parts))
+    names: tuple[str, ...]
+    shapes: Array
+    scales: Array
 
 
 @dataclass(frozen=True)
-class EvaluationPoints:
-    """Where the film thickness is evaluated, and the bore there.
+class FilmGeometry:
+    """Film thickness as a function of the displacements, on the cells of one mesh.
 
     Attributes
     ----------
-    cos, sin : (3, n) arrays
-        Of the angle at centres, west faces and east faces.
-    bore : (3, n) array
-        Clearance and lobes: the film thickness around a centred journal [m]. On a face shared by
-        two lobes each cell sees its own.
-    y, y_faces : (m,) and (m + 1,) arrays
-        [m]
-    tilt : tuple of float
-        [rad]
+    rest : (5, n, m) array
+        h with all displacements zero [m], at the points of `Displacements.shapes`. Where the bore
+        steps at a face, as between lobes, each cell sees its own side.
+    displacements : Displacements
+    land : (n, m) bool array
+        Cells with metal behind the film: outside the grooves.
+    multiplicity : float
+        How many identical parts the mesh stands for.
     """
 
-    cos: Array
-    sin: Array
-    bore: Array
-    y: Array
-    y_faces: Array
-    tilt: tuple[float, float]
+    rest: Array
+    displacements: Displacements
+    land: Flags
+    multiplicity: float
+
+    def thickness(self, q: Array) -> Array:
+        """Film thickness [m], (5, n, m), at the displacements `q`."""
+        h = self.rest.copy()
+        for value, shape in zip(q, self.displacements.shapes, strict=True):
+            if value != 0.0:
+                h += value * shape
+        return h
+
+    def thinnest(self, thickness: Array) -> float:
+        """Smallest film thickness [m] on any face or centre of the lands."""
+        return float(thickness[:, self.land].min())
+
+    def thinnest_at(self, q: Array) -> float:
+        """Smallest film thickness [m] of the lands at `q`; not positive where the walls touch."""
+        return self.thinnest(self.thickness(q))
+
+    def forces(self, load: Array) -> Array:
+        """Generalised forces Q_q of the film, (q,), for the `load` p dA of each cell [N]."""
+        return self.multiplicity * np.tensordot(self.displacements.shapes[:, CENTER], load, axes=2)
 
 
-def evaluation_points(bearing: Bearing, theta_faces: Array, y_faces: Array) -> EvaluationPoints:
-    """Return the evaluation points of a mesh."""
-    inward = 1e-9 * np.diff(theta_faces)
-    theta = np.stack(
-        [0.5 * (theta_faces[1:] + theta_faces[:-1]), theta_faces[:-1], theta_faces[1:]]
+def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
+    """Geometry of a fixed bearing's film, displaced by the journal's translations."""
+    inward = 1e-9 * np.diff(mesh.theta_faces)
+    inside = _angles(mesh) + np.stack([np.zeros_like(inward), inward, -inward])
+    bore = (bearing.radial_clearance + bore_offset(bearing, inside))[[0, 1, 2, 0, 0]]
+    rest = np.repeat(bore[:, :, None], mesh.shape[1], axis=2)
+    if not bearing.is_symmetric:
+        tilt = np.array([-bearing.tilt[1], bearing.tilt[0]])
+        rest += np.tensordot(tilt, rotations(bearing, mesh).shapes, axes=1)
+    return FilmGeometry(
+        rest, translations(bearing, mesh), mesh.supply < 0, multiplicity=mesh.multiplicity
     )
-    inside = theta + np.stack([np.zeros_like(inward), inward, -inward])
-    return EvaluationPoints(
-        cos=np.cos(theta),
-        sin=np.sin(theta),
-        bore=bearing.radial_clearance + bore_offset(bearing, inside),
-        y=0.5 * (y_faces[1:] + y_faces[:-1]),
-        y_faces=y_faces,
-        tilt=bearing.tilt,
-    )
 
 
-def film_thickness(at: EvaluationPoints, position: tuple[float, float]) -> Thickness:
-    """Film thickness c - e_x cos(theta) - e_y sin(theta) + lobes, e following the tilt along y."""
-    h = np.empty((5, at.cos.shape[1], at.y.size))
-    _thickness(
-        at.cos, at.sin, at.bore, at.y, at.y_faces, at.tilt[0], at.tilt[1], position[0],
-        position[1], h,
-    )  # fmt: skip
-    return Thickness(center=h[0], west=h[1], east=h[2], south=h[3], north=h[4])
+def translations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
+    """Displacements of the journal's centre along x and y [m]."""
+    theta = _angles(mesh)
+    around = np.stack([-np.cos(theta), -np.sin(theta)])[:, [0, 1, 2, 0, 0], :, None]
+    shapes = np.ascontiguousarray(np.broadcast_to(around, (2, 5, *mesh.shape)))
+    return Displacements(TRANSLATIONS, shapes, np.full(2, bearing.radial_clearance))
 
 
-def thinnest_film(at: EvaluationPoints, position: tuple[float, float]) -> float:
-    """Smallest film thickness on any face or centre [m]; not positive outside the bore."""
-    ends = at.y_faces[[0, -1]][:, None, None]
-    ex, ey = position[0] + at.tilt[0] * ends, position[1] + at.tilt[1] * ends
-    return float((at.bore - ex * at.cos - ey * at.sin).min())
+def rotations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
+    """Rotations of the journal about x and y [rad], through the bearing's mid-plane."""
+    theta = _angles(mesh)
+    around = np.stack([np.sin(theta), -np.cos(theta)])[:, [0, 1, 2, 0, 0], :, None]
+    y = mesh.y
+    along = np.stack([y, y, y, mesh.y_faces[:-1], mesh.y_faces[1:]])[:, None, :]
+    scale = bearing.radial_clearance / (0.5 * bearing.length)
+    return Displacements(ROTATIONS, around * along, np.full(2, scale))
 
 
-@kernel
-def _thickness(cos, sin, bore, y, y_faces, tilt_x, tilt_y, ex, ey, h):
-    n, m = cos.shape[1], y.size
-    for i in range(n):
-        for j in range(m):
-            x_j, y_j = ex + tilt_x * y[j], ey + tilt_y * y[j]
-            for face in range(3):
-                h[face, i, j] = bore[face, i] - x_j * cos[face, i] - y_j * sin[face, i]
-            for end in range(2):
-                x_j, y_j = ex + tilt_x * y_faces[j + end], ey + tilt_y * y_faces[j + end]
-                h[3 + end, i, j] = bore[0, i] - x_j * cos[0, i] - y_j * sin[0, i]
+def _angles(mesh: FilmMesh) -> Array:
+    """Angles [rad] of centres, west faces and east faces, (3, n)."""
+    return np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])

@@ -11,8 +11,7 @@ from ..model import InletModel
 from .energy import EnergyProblem, dissipation
 from .flow import FilmFlow, film_flow
 from .operator import EAST, NORTH, SOUTH, WEST
-from .problem import FilmProblem
-from .state import FilmState
+from .problem import FilmProblem, FilmState
 from .walls import FilmContact, Walls
 
 Array = NDArray[np.float64]
@@ -78,7 +77,7 @@ def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
         oil.thermal_conductivity
         * flow.liquid_fraction
         * state.operator.area
-        / state.thickness.center
+        / state.center_thickness
         * layers
         * ~state.operator.fixed
     )
@@ -90,7 +89,7 @@ def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
         flow=flow,
         layers=state.layers,
         heating=dissipation(
-            state.operator, state.thickness, state.layers, flow, problem.surface_speed
+            state.operator, state.center_thickness, state.layers, flow, problem.surface_speed
         ),
         carry_over=_carry_over(problem, state, flow),
         conductance=conductance,

@@ -30,24 +30,33 @@ class LayerIntegrals:
     Attributes
     ----------
     f0, f2, g : (n, m) arrays
-        F_0 [1/(Pa s)], F_2 [1/(Pa s)], G = F_1/F_0 [-].
+        F_0 [1/(Pa s)], F_2 [1/(Pa s)] in the direction of motion, G = F_1/F_0 [-].
+    f2_axial : (n, m) array
+        F_2 along the axis; the same in laminar flow.
     pressure_share, shear_share : (n, m, k) arrays
         a_k [1/(Pa s)] and b_k [-]; empty (k = 0) for an isoviscous film.
+    rates : (3, n, m) array or None
+        d ln/d ln h of f2, f2_axial and 1 - g, where the flow law makes them depend on the film
+        thickness.
     """
 
     f0: Array
     f2: Array
+    f2_axial: Array
     g: Array
     pressure_share: Array
     shear_share: Array
+    rates: Array | None = None
 
 
 def isoviscous_layers(shape: tuple[int, int], viscosity: float) -> LayerIntegrals:
     """F_0 = 1/mu, G = 1/2, F_2 = 1/(12 mu): Reynolds' equation."""
     empty = np.empty((*shape, 0))
+    f2 = np.full(shape, 1.0 / (12.0 * viscosity))
     return LayerIntegrals(
         f0=np.full(shape, 1.0 / viscosity),
-        f2=np.full(shape, 1.0 / (12.0 * viscosity)),
+        f2=f2,
+        f2_axial=f2,
         g=np.full(shape, 0.5),
         pressure_share=empty,
         shear_share=empty,
@@ -60,7 +69,7 @@ def layer_integrals(viscosity: Array) -> LayerIntegrals:
     f0, f2, g = np.empty((n, m)), np.empty((n, m)), np.empty((n, m))
     pressure_share, shear_share = np.empty((n, m, k)), np.empty((n, m, k))
     _integrate(viscosity, f0, f2, g, pressure_share, shear_share)
-    return LayerIntegrals(f0, f2, g, pressure_share, shear_share)
+    return LayerIntegrals(f0, f2, f2, g, pressure_share, shear_share)
 
 
 @kernel

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import RupturedFriction
-from .problem import FilmProblem
-from .state import FilmState
+from .problem import FilmProblem, FilmState
 
 Array = NDArray[np.float64]
 
@@ -34,7 +33,7 @@ def friction_force(problem: FilmProblem, state: FilmState, fraction: Array) -> f
         * fraction
         * problem.surface_speed
         * operator.area
-        / (state.thickness.center * state.layers.f0)
+        / (state.center_thickness * state.layers.f0)
     )
     return float(problem.mesh.multiplicity * (driven + dragged))
 

@@ -160,7 +160,9 @@ def _theta_faces(
             value=count,
         )
     fine = np.linspace(start, start + 2.0 * math.pi, 4001)
-    h = _mid_thickness(bearing, fine, position)
+    # Kept positive, so that the density stays finite.
+    h = mid_thickness(bearing, fine, position)
+    h = np.maximum(h, 1e-4 * bearing.radial_clearance)
     density = (1.0 - GRADED_SHARE) / (2.0 * math.pi)
     density = density + GRADED_SHARE / h / np.trapezoid(1.0 / h, fine)
     steps = 0.5 * (density[1:] + density[:-1]) * np.diff(fine)
@@ -178,15 +180,23 @@ def _theta_faces(
     return np.concatenate(faces)
 
 
-def _mid_thickness(bearing: Bearing, theta: Array, position: tuple[float, float]) -> Array:
-    """Film thickness at mid-plane, kept above 1e-4 of the clearance for the mesh's density."""
+def mid_thickness(bearing: Bearing, theta: Array, position: tuple[float, float]) -> Array:
+    """Film thickness at mid-plane [m]; in full-length grooves not below that of the lands.
+
+    A groove has no metal behind the film: the journal may stand deeper in its opening than it may
+    anywhere else.
+    """
     h = (
         bearing.radial_clearance
         - position[0] * np.cos(theta)
         - position[1] * np.sin(theta)
         + bore_offset(bearing, theta)
     )
-    return np.maximum(h, 1e-4 * bearing.radial_clearance)
+    open_ = np.zeros(theta.shape, dtype=bool)
+    for groove in bearing.grooves:
+        if bearing.spans_length(groove):
+            open_ |= np.abs(angle_between(theta, groove.center)) < groove.extent / 2.0
+    return np.where(open_, np.maximum(h, h[~open_].min()), h) if open_.any() else h
 
 
 def _film_weight(bearing: Bearing, breaks: list[float], shares: Array) -> Array:

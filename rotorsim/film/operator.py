@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .geometry import Thickness
+from .flow_law import COUETTE_POWER, POISEUILLE_POWER
 from .kernels import kernel
 from .layers import LayerIntegrals
 from .mesh import FilmMesh
@@ -48,8 +48,6 @@ class FilmOperator:
         Cells of grooves: the pressure is `fixed_pressure[WEST]` there.
     area : (n, m) array
         [m2]
-    cos, sin : (3, n, 1) arrays
-        Of the angle at centres, west faces and east faces.
     dx, dy : (n,) and (m,) arrays
         Cell lengths [m].
     """
@@ -62,8 +60,6 @@ class FilmOperator:
     spacing: Array
     fixed: Flags
     area: Array
-    cos: Array
-    sin: Array
     dx: Array
     dy: Array
 
@@ -77,8 +73,6 @@ class FaceTopology:
     spacing: Array
     fixed: Flags
     area: Array
-    cos: Array
-    sin: Array
     dx: Array
     dy: Array
 
@@ -135,42 +129,47 @@ def face_topology(mesh: FilmMesh, supply_pressure: Array) -> FaceTopology:
     spacing[SOUTH, :, 0] *= 1.0 - 0.25 * float(dy[0]) / half_length
     if mesh.half:
         spacing[SOUTH, :, 0] = np.inf  # the mid-plane: no flux, whatever lies behind
-    angles = np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])[:, :, None]
     return FaceTopology(
         interior=interior,
         fixed_pressure=fixed_pressure,
         spacing=spacing,
         fixed=fixed,
         area=dx[:, None] * dy[None, :],
-        cos=np.cos(angles),
-        sin=np.sin(angles),
         dx=dx,
         dy=dy,
     )
 
 
 def film_operator(
-    topology: FaceTopology, film: Thickness, layers: LayerIntegrals, surface_speed: float
+    topology: FaceTopology, thickness: Array, layers: LayerIntegrals, surface_speed: float
 ) -> FilmOperator:
-    """Conductances and Couette flow for the film thickness and the viscosity integrals."""
+    """Conductances and Couette flow for the film thickness and the viscosity integrals.
+
+    Parameters
+    ----------
+    topology : FaceTopology
+    thickness : (5, n, m) array
+        At each cell's centre and on its west, east, south and north face, seen from inside [m].
+    layers : LayerIntegrals
+    surface_speed : float
+        [m/s]
+    """
     shape = topology.interior.shape
-    conductance, thickness = np.empty(shape), np.empty(shape)
+    conductance, face_thickness = np.empty(shape), np.empty(shape)
     couette = np.empty((2, *shape[1:]))
     _assemble(
-        film.west, film.east, film.south, film.north, layers.f2, layers.g, topology.interior,
-        topology.spacing, topology.dx, topology.dy, surface_speed, conductance, thickness, couette,
+        thickness[1:], layers.f2, layers.f2_axial, layers.g, topology.interior, topology.spacing,
+        topology.dx, topology.dy, surface_speed, conductance, face_thickness, couette,
     )  # fmt: skip
     return FilmOperator(
         conductance=conductance,
         interior=topology.interior,
         fixed_pressure=topology.fixed_pressure,
-        face_thickness=thickness,
+        face_thickness=face_thickness,
         couette=couette,
         spacing=topology.spacing,
         fixed=topology.fixed,
         area=topology.area,
-        cos=topology.cos,
-        sin=topology.sin,
         dx=topology.dx,
         dy=topology.dy,
     )
@@ -190,30 +189,26 @@ def neighbour(face: int, i: int, j: int, n: int, m: int) -> tuple[int, int]:
 
 @kernel
 def _assemble(
-    west, east, south, north, f2, g, interior, spacing, dx, dy, surface_speed, conductance,
-    thickness, couette,
+    sides, f2, f2_axial, g, interior, spacing, dx, dy, surface_speed, conductance, thickness,
+    couette,
 ):  # fmt: skip
     n, m = f2.shape
     for i in range(n):
         for j in range(m):
             for face in range(4):
                 k, q = neighbour(face, i, j, n, m)
-                width = dy[j] if face < 2 else dx[i]
-                if face == 0:
-                    h = west[i, j]
-                    h = 0.5 * (h + east[k, j]) if interior[0, i, j] else h
-                elif face == 1:
-                    h = east[i, j]
-                    h = 0.5 * (h + west[k, j]) if interior[1, i, j] else h
-                elif face == 2:
-                    h = south[i, j]
-                else:
-                    h = north[i, j]
-                mobility, open_share = f2[i, j], 1.0 - g[i, j]
+                along = face < 2
+                width = dy[j] if along else dx[i]
+                h = sides[face, i, j]
+                mobility = f2[i, j] if along else f2_axial[i, j]
+                open_share = 1.0 - g[i, j]
                 if interior[face, i, j]:
-                    mobility = 0.5 * (mobility + f2[k, q])
+                    h = 0.5 * (h + sides[face ^ 1, k, q])
+                    mobility = 0.5 * (mobility + (f2[k, q] if along else f2_axial[k, q]))
                     open_share = 0.5 * (open_share + 1.0 - g[k, q])
                 thickness[face, i, j] = h
-                conductance[face, i, j] = h**3 * mobility * width / spacing[face, i, j]
-                if face < 2:
-                    couette[face, i, j] = surface_speed * h * open_share * width
+                conductance[face, i, j] = (
+                    h**POISEUILLE_POWER * mobility * width / spacing[face, i, j]
+                )
+                if along:
+                    couette[face, i, j] = surface_speed * h**COUETTE_POWER * open_share * width

@@ -1,16 +1,15 @@
-"""The film of one bearing at one speed: what stays put while position and heat change."""
+"""The film of one bearing at one speed, and its state at given displacements and viscosity."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..model import (
     Bearing,
     Case,
-    Cavitation,
     FilmSettings,
     Inception,
     Lubricant,
@@ -18,14 +17,12 @@ from ..model import (
     ThermalSettings,
 )
 from .banded import NoFilmError
-from .cavitation import solve_pressure
-from .geometry import EvaluationPoints, evaluation_points, film_thickness, thinnest_film
-from .jfo import solve_jfo
+from .flow_law import FlowLaw, flow_law
+from .geometry import CENTER, FilmGeometry, film_geometry
 from .layers import LayerIntegrals
-from .linearized import film_force
 from .mesh import FilmMesh, build_mesh
-from .operator import FaceTopology, face_topology, film_operator
-from .state import FilmState
+from .operator import FaceTopology, FilmOperator, face_topology, film_operator
+from .rupture import PressureSolution, RuptureCondition, rupture_condition
 
 Array = NDArray[np.float64]
 
@@ -44,7 +41,9 @@ class FilmProblem:
         [rad/s]
     mesh : FilmMesh
     topology : FaceTopology
-    evaluation_points : EvaluationPoints
+    geometry : FilmGeometry
+    flow_law : FlowLaw
+    rupture : RuptureCondition
     """
 
     bearing: Bearing
@@ -54,7 +53,9 @@ class FilmProblem:
     speed: float
     mesh: FilmMesh
     topology: FaceTopology
-    evaluation_points: EvaluationPoints
+    geometry: FilmGeometry
+    flow_law: FlowLaw
+    rupture: RuptureCondition
 
     @property
     def surface_speed(self) -> float:
@@ -72,6 +73,45 @@ class FilmProblem:
         return self.is_thermal or self.settings.inception is Inception.MAX_FILM
 
 
+@dataclass(frozen=True)
+class FilmState:
+    """The film at one vector of displacements and one viscosity field.
+
+    Attributes
+    ----------
+    problem : FilmProblem
+    displacement : (q,) array
+        Generalised displacements, in the order of `FilmGeometry.displacements`; film frame.
+    thickness : (5, n, m) array
+        At each cell's centre and on its faces [m].
+    operator : FilmOperator
+        Its Couette flow is what the ruptured film carries.
+    layers : LayerIntegrals
+        Under the problem's flow law.
+    solution : PressureSolution
+    force : (q,) array
+        Generalised forces of the film; the first two are those on the journal [N], film frame.
+    """
+
+    problem: FilmProblem
+    displacement: Array
+    thickness: Array
+    operator: FilmOperator
+    layers: LayerIntegrals
+    solution: PressureSolution
+    force: Array
+
+    @property
+    def center_thickness(self) -> Array:
+        """Film thickness at the cell centres [m], (n, m)."""
+        return self.thickness[CENTER]
+
+    @property
+    def min_thickness(self) -> float:
+        """Smallest film thickness over the lands [m]."""
+        return self.problem.geometry.thinnest(self.thickness)
+
+
 def film_problem(
     case: Case, speed: float, bearing: Bearing, position: tuple[float, float]
 ) -> FilmProblem:
@@ -86,39 +126,59 @@ def film_problem(
         speed=speed,
         mesh=mesh,
         topology=face_topology(mesh, supply),
-        evaluation_points=evaluation_points(bearing, mesh.theta_faces, mesh.y_faces),
+        geometry=film_geometry(bearing, mesh),
+        flow_law=flow_law("laminar"),
+        rupture=rupture_condition(case.film.cavitation),
     )
 
 
 def film_state(
     problem: FilmProblem,
-    position: tuple[float, float],
+    displacement: ArrayLike,
     layers: LayerIntegrals,
     *,
-    velocity: tuple[float, float] = (0.0, 0.0),
+    velocity: ArrayLike | None = None,
     start: NDArray[np.bool_] | None = None,
     frozen: NDArray[np.bool_] | None = None,
 ) -> FilmState:
-    """Pressure and force with the journal at `position` [m], moving with `velocity` [m/s]."""
-    mesh = problem.mesh
-    thickness = film_thickness(problem.evaluation_points, position)
-    if thinnest_film(problem.evaluation_points, position) <= 0.0:
-        raise NoFilmError("the journal touches the bore: lobes and tilt leave less room than asked")
+    """Solve for pressure and forces at the displacements q.
+
+    Parameters
+    ----------
+    problem : FilmProblem
+    displacement : (q,) array
+        Film frame.
+    layers : LayerIntegrals
+        Of laminar flow with the film's viscosity.
+    velocity : (q,) array, optional
+        Rates of the displacements [1/s]; at rest without.
+    start, frozen : (n, m) bool arrays, optional
+        See `RuptureCondition.solve`.
+
+    Raises
+    ------
+    NoFilmError
+        The walls touch.
+    """
+    geometry, mesh = problem.geometry, problem.mesh
+    displacement = np.array(displacement, dtype=float)
+    thickness = geometry.thickness(displacement)
+    if geometry.thinnest(thickness) <= 0.0:
+        raise NoFilmError(
+            "the journal touches the bore: lobes and misalignment leave less room than asked"
+        )
+    layers = problem.flow_law.integrals(layers, thickness[CENTER], problem.surface_speed)
     operator = film_operator(problem.topology, thickness, layers, problem.surface_speed)
     squeeze = None
-    if velocity != (0.0, 0.0):
-        squeeze = -velocity[0] * operator.cos[0] - velocity[1] * operator.sin[0]
-        squeeze = np.broadcast_to(squeeze, mesh.shape)
-    if problem.settings.cavitation is Cavitation.JFO:
-        operator, solution = solve_jfo(operator, squeeze=squeeze, start=start, frozen=frozen)
-    else:
-        solution = solve_pressure(
-            operator,
-            problem.settings.cavitation,
-            squeeze=squeeze,
-            start=start,
-            region=mesh.region if problem.anchored else None,
-            frozen=frozen,
-        )
-    force = film_force(operator, solution.pressure, mesh.multiplicity)
-    return FilmState(position, thickness, operator, layers, solution, force)
+    if velocity is not None and np.any(velocity):
+        shapes = geometry.displacements.shapes[:, CENTER]
+        squeeze = np.tensordot(np.asarray(velocity, dtype=float), shapes, axes=1)
+    operator, solution = problem.rupture.solve(
+        operator,
+        squeeze=squeeze,
+        start=start,
+        region=mesh.region if problem.anchored else None,
+        frozen=frozen,
+    )
+    force = geometry.forces(solution.pressure * operator.area)
+    return FilmState(problem, displacement, thickness, operator, layers, solution, force)

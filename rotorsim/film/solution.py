@@ -15,11 +15,10 @@ from ..status import SolveStatus
 from .banded import NoFilmError, SingularFilmError
 from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
 from .first_position import first_positions
-from .geometry import evaluation_points, thinnest_film
 from .heat import Heat
 from .layers import isoviscous_layers
-from .problem import FilmProblem, film_problem, film_state
-from .state import FilmState
+from .mesh import mid_thickness
+from .problem import FilmProblem, FilmState, film_problem, film_state
 from .thd import (
     ROUGH_TOLERANCE,
     ThermalFilm,
@@ -89,7 +88,7 @@ class FilmSolution:
     def warm_start(self) -> WarmStart:
         """First guess for a neighbouring speed."""
         return WarmStart(
-            position=_turned(self.state.position, self.frame),
+            position=_turned(_pair(self.state.displacement), self.frame),
             heat=self.thermal.heat if self.thermal is not None else None,
             full=self.state.solution.full,
         )
@@ -149,24 +148,24 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
     if isinstance(target, EccentricityTarget):
         position = (target.eccentricity_ratio * clearance, 0.0)
         problem = film_problem(case, speed, case.bearing, position)
-        film = _iterate(problem, position, None, initial)
+        film = _iterate(problem, np.array(position), None, initial)
         return _conclude(problem, film, _load_line(film.state), None, film.iterations)
     eps = math.hypot(*initial.position) / clearance if initial else 0.5
-    warm, search, effort = initial, PlainSearch(target.load, clearance, 2.0), _Effort()
+    warm, search, effort = initial, PlainSearch(target.load, clearance), _Effort()
     while True:
         level = graded_eccentricity(eps)
         problem = film_problem(case, speed, case.bearing, (level * clearance, 0.0))
         search.unreachable = False
         if problem.is_thermal and warm is None:
-            warm = _cold_start(problem, (eps * clearance, 0.0), search)
+            warm = _cold_start(problem, np.array([eps * clearance, 0.0]), search)
             eps = min(warm.position[0] / clearance, 0.9)
             continue
         film = _iterate(
-            problem, (eps * clearance, 0.0), search, warm,
-            lambda p, level=level: effort.proceed(graded_eccentricity(p[0] / clearance) == level),
+            problem, np.array([eps * clearance, 0.0]), search, warm,
+            lambda q, level=level: effort.proceed(graded_eccentricity(q[0] / clearance) == level),
         )  # fmt: skip
-        eps = film.state.position[0] / clearance
-        warm = WarmStart(film.state.position, film.heat, film.state.solution.full)
+        eps = float(film.state.displacement[0]) / clearance
+        warm = WarmStart(_pair(film.state.displacement), film.heat, film.state.solution.full)
         if effort.ends(film) or search.unreachable:
             return _conclude(problem, film, _load_line(film.state), search, effort.iterations)
 
@@ -195,11 +194,11 @@ class _Effort:
         return nowhere or (self.settled and not again)
 
 
-def _cold_start(problem: FilmProblem, position: Position, search: Search) -> WarmStart:
+def _cold_start(problem: FilmProblem, displacement: Array, search: Search) -> WarmStart:
     """Position of the isothermal film, for a thermal one to begin at."""
-    cold = _iterate_isothermal(problem, position, search, None, lambda _: False)
-    position = cold.state.position if cold.converged else position
-    return WarmStart(position, None, cold.state.solution.full)
+    cold = _iterate_isothermal(problem, displacement, search, None, lambda _: False)
+    displacement = cold.state.displacement if cold.converged else displacement
+    return WarmStart(_pair(displacement), None, cold.state.solution.full)
 
 
 def graded_eccentricity(eps: float) -> float:
@@ -226,19 +225,20 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
         search = _search(case, problem, frame)
         local = _inside(problem, search, local)
         if problem.is_thermal and warm is None:
-            warm = _cold_start(problem, local, search)
+            warm = _cold_start(problem, np.array(local), search)
             position = _turned(warm.position, frame)
             continue
 
-        def own_mesh(where: Position, bearing: Bearing = bearing, level: Position = level) -> bool:
-            turn = _frame_angle(case.bearing, where)
-            own = _graded_position(bearing, where) == level
+        def own_mesh(q: Array, bearing: Bearing = bearing, level: Position = level) -> bool:
+            turn = _frame_angle(case.bearing, _pair(q))
+            own = _graded_position(bearing, _pair(q)) == level
             return effort.proceed(own and abs(turn) < 10.0 * FRAME_TOLERANCE)
 
-        film = _iterate(problem, local, search, warm, own_mesh)
-        position = _turned(film.state.position, frame)
+        film = _iterate(problem, np.array(local), search, warm, own_mesh)
+        local = _pair(film.state.displacement)
+        position = _turned(local, frame)
         warm = WarmStart(position, film.heat, film.state.solution.full)
-        turn = _frame_angle(case.bearing, film.state.position)
+        turn = _frame_angle(case.bearing, local)
         if effort.ends(film, moved=abs(turn) > FRAME_TOLERANCE) or search.unreachable:
             return _conclude(problem, film, frame, search, effort.iterations)
 
@@ -247,7 +247,7 @@ def _inside(problem: FilmProblem, search: Search, position: Position) -> Positio
     """A first position with film all round, nearer to the centre if need be."""
     for share in (1.0, 0.7, 0.4, 0.0):
         nearer = (share * position[0], share * position[1])
-        if thinnest_film(problem.evaluation_points, nearer) > 0.0:
+        if problem.geometry.thinnest_at(np.array(nearer)) > 0.0:
             return nearer
         if isinstance(search, AttitudeSearch):
             raise NoFilmError(
@@ -257,15 +257,11 @@ def _inside(problem: FilmProblem, search: Search, position: Position) -> Positio
 
 
 def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | AttitudeSearch:
-    clearance, times = case.bearing.radial_clearance, problem.mesh.multiplicity
+    clearance = case.bearing.radial_clearance
     if isinstance(case.target, EccentricityTarget):
-        return AttitudeSearch(case.target.eccentricity_ratio * clearance, -frame, times)
+        return AttitudeSearch(case.target.eccentricity_ratio * clearance, -frame)
     load = case.target.load * np.array([math.cos(frame), -math.sin(frame)])
-    return LoadSearch(load, clearance, times, _thinnest(problem))
-
-
-def _thinnest(problem: FilmProblem) -> Callable[[Position], float]:
-    return lambda position: thinnest_film(problem.evaluation_points, position)
+    return LoadSearch(load, clearance, problem.geometry)
 
 
 def _first_position(case: Case) -> Position:
@@ -286,13 +282,14 @@ def _frame_angle(bearing: Bearing, position: Position) -> float:
 
 def _graded_position(bearing: Bearing, position: Position) -> Position:
     """Position for which the mesh is graded, on a grid as fine as the film is thin."""
-    around = evaluation_points(
-        bearing, np.linspace(0.0, 2.0 * math.pi, 181), np.array([-1e-9, 1e-9])
-    )
-    thin = thinnest_film(around, position)
+    thin = float(mid_thickness(bearing, np.linspace(0.0, 2.0 * math.pi, 361), position).min())
     relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
     grid = 2.0 ** math.floor(math.log2(relative / 2.0)) * bearing.radial_clearance
     return round(position[0] / grid) * grid, round(position[1] / grid) * grid
+
+
+def _pair(displacement: Array) -> Position:
+    return float(displacement[0]), float(displacement[1])
 
 
 def _turned(position: Position, angle: float) -> Position:
@@ -302,20 +299,20 @@ def _turned(position: Position, angle: float) -> Position:
 
 def _iterate(
     problem: FilmProblem,
-    position: Position,
+    displacement: Array,
     search: Search | None,
     initial: WarmStart | None,
-    proceed: Callable[[Position], bool] | None = None,
+    proceed: Callable[[Array], bool] | None = None,
 ) -> _Iterate:
     if not problem.is_thermal:
-        return _iterate_isothermal(problem, position, search, initial, proceed)
+        return _iterate_isothermal(problem, displacement, search, initial, proceed)
     shape = (*problem.mesh.shape, problem.settings.mesh.cross_film)
     heat = initial.heat if initial else None
     if heat is None or heat.temperature.shape != shape:
         heat = uniform_heat(problem)
     film = solve_thermal_film(
         problem,
-        position,
+        displacement,
         initial=heat,
         move=search,
         force_tolerance=10.0 * FORCE_TOLERANCE,
@@ -326,10 +323,10 @@ def _iterate(
 
 def _iterate_isothermal(
     problem: FilmProblem,
-    position: Position,
+    displacement: Array,
     search: Search | None,
     initial: WarmStart | None,
-    proceed: Callable[[Position], bool] | None = None,
+    proceed: Callable[[Array], bool] | None = None,
 ) -> _Iterate:
     """The film at the supply temperature's viscosity."""
     viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
@@ -338,14 +335,14 @@ def _iterate_isothermal(
     off, step, stuck = 0.0, 0, 0
     while True:
         step += 1
-        state = film_state(problem, position, layers, start=full)
+        state = film_state(problem, displacement, layers, start=full)
         full = state.solution.full
         if search is None:
             return _Iterate(state, None, state.solution.converged, state.solution.steps, 0.0)
-        position, off = search(state)
+        displacement, off = search(state)
         stuck = stuck + 1 if search.unreachable else 0
         if proceed is not None and off < ROUGH_TOLERANCE:
-            if not proceed(state.position):
+            if not proceed(state.displacement):
                 return _Iterate(state, None, state.solution.converged, step, off)
             proceed = None
         if off < FORCE_TOLERANCE or stuck >= 4 or step == MAX_POSITION_STEPS:

@@ -37,13 +37,11 @@ from .heat import (
     inlet_temperatures,
 )
 from .layers import layer_integrals
-from .problem import FilmProblem, film_state
-from .state import FilmState
+from .problem import FilmProblem, FilmState, film_state
 from .walls import FilmContact, Walls, choose_walls
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-Position = tuple[float, float]
 
 TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
@@ -122,15 +120,15 @@ class ThermalFilm:
 
 
 class Move(Protocol):
-    """Search for the journal's position."""
+    """Search for the displacements at which the film carries its load."""
 
     unreachable: bool
 
-    def __call__(self, state: FilmState) -> tuple[Position, float]:
-        """From the film's state to the next position and the relative force residual."""
+    def __call__(self, state: FilmState) -> tuple[Array, float]:
+        """From the film's state to the next displacements and the relative force residual."""
         ...
 
-    def allowed(self, old: Position, new: Position, /) -> Position:
+    def allowed(self, old: Array, new: Array, /) -> Array:
         """Pull a mixed step back to where a film can be."""
         ...
 
@@ -145,12 +143,12 @@ def uniform_heat(problem: FilmProblem) -> Heat:
 
 def solve_thermal_film(
     problem: FilmProblem,
-    position: Position,
+    displacement: Array,
     *,
     initial: Heat | None = None,
     move: Move | None = None,
     full: Flags | None = None,
-    proceed: Callable[[Position], bool] | None = None,
+    proceed: Callable[[Array], bool] | None = None,
     force_tolerance: float = 1e-7,
     tolerance: float = TOLERANCE,
     max_iterations: int = MAX_ITERATIONS,
@@ -159,17 +157,17 @@ def solve_thermal_film(
 
     Parameters
     ----------
-    position : tuple of float
-        Journal centre [m], film frame; the first guess if `move` is given.
+    displacement : (q,) array
+        Generalised displacements, film frame; the first guess if `move` is given.
     initial : Heat, optional
         A neighbouring solution.
     move : callable, optional
-        Gives the next position; called once an iteration.
+        Gives the next displacements; called once an iteration.
     full : (n, m) bool array, optional
         The full cells, taken as given throughout.
     proceed : callable, optional
-        Called once, when both residuals fall below `ROUGH_TOLERANCE`, with the position. Return
-        False to get the rough solution back (`converged` False), as for a mesh graded anew.
+        Called once, when both residuals fall below `ROUGH_TOLERANCE`, with the displacements.
+        Return False to get the rough solution back (`converged` False), as for a mesh graded anew.
     tolerance : float
         Of the change of log viscosity; the other tolerances stay.
 
@@ -179,17 +177,17 @@ def solve_thermal_film(
         With `converged` False and a `cause` if `max_iterations` did not suffice.
     """
     heat = uniform_heat(problem) if initial is None else initial
-    clearance, walls = problem.bearing.radial_clearance, choose_walls(problem)
-    mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 1 + len(position))
+    scales, walls = problem.geometry.displacements.scales, choose_walls(problem)
+    mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 1 + scales.size)
     progress, leaving = _Progress(kept=full, given=full is not None), None
     while True:
-        step = _apply(problem, walls, position, heat, progress, leaving)
+        step = _apply(problem, walls, displacement, heat, progress, leaving)
         leaving = step.leaving
-        target, off = (position, 0.0) if move is None else move(step.state)
+        target, off = (displacement, 0.0) if move is None else move(step.state)
         progress.record(step, unreachable=move is not None and move.unreachable)
         stop = False
         if proceed is not None and max(step.residual, off) < ROUGH_TOLERANCE:
-            stop, proceed = not proceed(step.state.position), None
+            stop, proceed = not proceed(step.state.displacement), None
         cause = _unsettled(step.residual, tolerance, off, force_tolerance)
         balance = None
         if not (cause or stop):
@@ -205,14 +203,15 @@ def solve_thermal_film(
                 iterations=len(progress.history), residual=step.residual,
             )  # fmt: skip
         mixed = mixer.next(
-            _packed(heat, position, clearance), _packed(step.mapped, target, clearance)
+            _packed(heat, displacement / scales), _packed(step.mapped, target / scales)
         )
-        heat, following = _unpacked(mixed, heat, len(position), clearance)
+        heat, relative = _unpacked(mixed, heat, scales.size)
         if move is not None:
-            allowed = move.allowed(position, following)
-            if allowed != following:
+            following = relative * scales
+            allowed = move.allowed(displacement, following)
+            if not np.array_equal(allowed, following):
                 mixer.forget()
-            position = allowed
+            displacement = allowed
 
 
 @dataclass(frozen=True)
@@ -291,7 +290,7 @@ def _beyond_limits(temperature: Array) -> bool:
 def _apply(
     problem: FilmProblem,
     walls: Walls,
-    position: Position,
+    displacement: Array,
     heat: Heat,
     progress: _Progress,
     leaving: Array | None,
@@ -299,7 +298,7 @@ def _apply(
     """Apply the fixed point's map once."""
     viscosity = problem.lubricant.law.viscosity(heat.temperature)
     layers = layer_integrals(viscosity)
-    state = film_state(problem, position, layers, start=progress.guess, frozen=progress.kept)
+    state = film_state(problem, displacement, layers, start=progress.guess, frozen=progress.kept)
     energy = energy_problem(problem, state)
     inlet = inlet_temperatures(problem, energy, heat.temperature)
     temperature = heat.temperature.copy()
@@ -361,14 +360,18 @@ def _unbalanced(balance: HeatBalance) -> str:
     return f"{abs(balance.imbalance):.2%} of the dissipated heat is unaccounted for"
 
 
-def _packed(heat: Heat, position: Position, clearance: float) -> Array:
-    """Return all unknowns in one flat array, the position weighing as much as the whole field."""
-    weight = _position_weight(heat, clearance)
-    tail = [heat.shaft, *(weight * q for q in position)]
-    return np.concatenate([heat.temperature.ravel(), heat.bush.ravel(), tail])
+def _packed(heat: Heat, relative: Array) -> Array:
+    """Return all unknowns in one flat array, a displacement weighing as much as the whole field.
+
+    `relative`: displacements over their scales.
+    """
+    displacements = _displacement_weight(heat) * relative
+    return np.concatenate(
+        [heat.temperature.ravel(), heat.bush.ravel(), [heat.shaft], displacements]
+    )
 
 
-def _unpacked(packed: Array, like: Heat, count: int, clearance: float) -> tuple[Heat, Position]:
+def _unpacked(packed: Array, like: Heat, count: int) -> tuple[Heat, Array]:
     """Reverse `_packed` for `count` displacements; temperatures are kept within their limits."""
     films, bore = like.temperature.size, like.bush.size
     np.clip(packed[:-count], *TEMPERATURE_LIMITS, out=packed[:-count])
@@ -377,9 +380,8 @@ def _unpacked(packed: Array, like: Heat, count: int, clearance: float) -> tuple[
         bush=packed[films : films + bore].reshape(like.bush.shape),
         shaft=float(packed[films + bore]),
     )
-    weight = _position_weight(like, clearance)
-    return heat, (float(packed[-2]) / weight, float(packed[-1]) / weight)
+    return heat, packed[-count:] / _displacement_weight(like)
 
 
-def _position_weight(heat: Heat, clearance: float) -> float:
-    return POSITION_WEIGHT * math.sqrt(heat.temperature.size) / clearance
+def _displacement_weight(heat: Heat) -> float:
+    return POSITION_WEIGHT * math.sqrt(heat.temperature.size)

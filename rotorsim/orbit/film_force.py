@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.layers import LayerIntegrals
-from ..film.problem import FilmProblem, film_state
+from ..film.problem import FilmProblem, FilmState, film_state
 from ..film.solution import FilmSolution, solve_film
-from ..film.state import FilmState
 from ..model import Bearing, Case, EccentricityTarget, Inception, LoadTarget, ThermalModel
 from ..status import SolveStatus
 from .clearance import minimum_film

@@ -24,7 +24,7 @@ from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.bearing.solve import solve_case
 from rotorsim.film.flow import film_flow
 from rotorsim.film.layers import isoviscous_layers
-from rotorsim.film.linearized import linearize
+from rotorsim.film.linearization import linearize
 from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
 from rotorsim.model import Bearing, BushModel, Groove, InletModel, LoadTarget, ShaftModel
@@ -122,7 +122,7 @@ def test_turning_bearing_and_journal_together_turns_the_force(eps, attitude, ang
         problem = film_problem(case, 100.0, bearing, (float(place[0]), float(place[1])))
         layers = isoviscous_layers(problem.mesh.shape, 0.02)
         state = film_state(problem, (float(place[0]), float(place[1])), layers)
-        return state, linearize(state.operator, state.solution, problem.mesh.multiplicity)
+        return state, linearize(state)
 
     straight, (k, c) = film(case.bearing, position)
     turned, (k_turned, c_turned) = film(case.bearing.turned(angle), turn @ position)

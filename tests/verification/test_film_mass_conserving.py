@@ -55,7 +55,7 @@ def second_method(*, center: float, extent: float, supply: float = 0.0, share: f
 def test_equilibrium_with_a_groove_ahead_of_the_load():
     solution = solve_film(grooved(LoadTarget(20e3), center=45.0, extent=20.0), SPEED)
     assert solution.status is SolveStatus.CONVERGED
-    x, y = np.array(solution.state.position) / CLEARANCE
+    x, y = solution.state.displacement / CLEARANCE
     film = second_method(center=45.0, extent=20.0)
     bracket = math.radians(12.0), math.radians(32.0)
     eccentricity, attitude = film.equilibrium(
@@ -75,7 +75,7 @@ def test_equilibria_with_a_groove_anywhere_but_under_the_load(supply):
         # next to the load line the film is short and thin: equal cells need to be many
         around = 432 if center in (15, 345) else 144
         film = second_method(**groove, around=around, along=8)
-        force = film.force(*np.array(solution.state.position) / CLEARANCE)
+        force = film.force(*solution.state.displacement / CLEARANCE)
         assert force * UNIT == pytest.approx([-20e3, 0.0], abs=0.03 * 20e3), center
 
 

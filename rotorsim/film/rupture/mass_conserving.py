@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
-from ..model import Cavitation
-from .banded import SingularFilmError, column_order
-from .cavitation import PressureSolution, solve_pressure
-from .kernels import kernel
-from .operator import FilmOperator
+from ..banded import SingularFilmError, column_order
+from ..kernels import kernel
+from ..operator import FilmOperator
+from .base import Factor, PressureSolution, with_fixed
+from .reynolds import Reynolds
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -57,7 +57,37 @@ class JfoFactor:
         return result.reshape(np.shape(right))
 
 
-def solve_jfo(
+class MassConserving:
+    """The ruptured film carries on what oil left the full film, and re-forms where it is filled."""
+
+    conserves_mass: bool = True
+    conserves_oil: bool = True
+
+    def solve(
+        self,
+        operator: FilmOperator,
+        *,
+        squeeze: Array | None = None,
+        start: Flags | None = None,
+        region: NDArray[np.int64] | None = None,
+        frozen: Flags | None = None,
+    ) -> tuple[FilmOperator, PressureSolution]:
+        """Solve for pressure and liquid fraction; see `RuptureCondition.solve`."""
+        del region
+        return _solve(operator, squeeze=squeeze, start=start, frozen=frozen)
+
+    def squeezed_area(self, operator: FilmOperator, solution: PressureSolution) -> Array:
+        """Return the area that oil fills [m2]: where the film is ruptured, only a part."""
+        assert solution.liquid is not None
+        return solution.liquid * operator.area
+
+    def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
+        """Factor the mixed system of `operator` in the state of `solution`."""
+        factor, _ = _mixed_system(operator, solution.full, np.zeros(operator.area.shape))
+        return factor
+
+
+def _solve(
     operator: FilmOperator,
     *,
     squeeze: Array | None = None,
@@ -77,7 +107,7 @@ def solve_jfo(
     if frozen is not None:
         full = frozen
     elif start is None:
-        guess = solve_pressure(operator, Cavitation.REYNOLDS, squeeze=squeeze)
+        _, guess = Reynolds().solve(operator, squeeze=squeeze)
         full = guess.full & film
     else:
         full = start & film
@@ -103,7 +133,7 @@ def solve_jfo(
     pressure = np.where(full, unknown, 0.0)
     liquid = np.where(full, 1.0, np.maximum(unknown, 0.0))
     liquid[operator.fixed] = 1.0
-    pressure = np.where(operator.fixed, operator.fixed_pressure[0], pressure)
+    pressure = with_fixed(operator, pressure)
     carried = _carried_fraction(operator, liquid)
     solution = PressureSolution(
         pressure=pressure,

@@ -1,22 +1,22 @@
-"""Pressure under each rupture condition; Reynolds' is a linear complementarity problem.
+"""Reynolds' (Swift-Stieber) rupture condition, a linear complementarity problem.
 
-``reynolds``: p >= 0, and where p = 0 the film may not be pushed: the primal-dual active set (a
-semi-smooth Newton method: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13, 2002) ends after
-finitely many steps, since the matrix is an M-matrix.
+p >= 0, and where p = 0 the film may not be pushed: the primal-dual active set (a semi-smooth Newton
+method: Hintermueller, Ito & Kunisch, SIAM J. Optim. 13, 2002) ends after finitely many steps, since
+the matrix is an M-matrix.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Cavitation
-from .banded import factor_operator
-from .kernels import kernel
-from .operator import FilmOperator
+from ..banded import factor_operator
+from ..kernels import kernel
+from ..operator import FilmOperator
+from .base import ConnectedFilm, PressureSolution, source_term, with_fixed
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -26,97 +26,41 @@ COARSEST = 16
 """Cells around below which no coarser mesh is used for the first guess."""
 
 
-class Factor(Protocol):
-    """A factored film matrix."""
+class Reynolds(ConnectedFilm):
+    """The film ruptures where both the pressure and its gradient vanish.
 
-    def solve(self, right: Array) -> Array:
-        """Solve for (..., n, m) right-hand sides [m3/s]."""
-        ...
-
-
-@dataclass(frozen=True)
-class PressureSolution:
-    """Pressure and where the film is full.
-
-    Attributes
-    ----------
-    pressure : (n, m) array
-        Gauge [Pa]; groove cells carry the supply pressure.
-    raw : (n, m) array
-        Before negative pressures are dropped (``half_sommerfeld``); else the same.
-    full : (n, m) bool array
-        Cells whose continuity the pressure solves.
-    factor : Factor
-        Of the matrix on those cells, for further right-hand sides.
-    steps : int
-        Linear solves.
-    converged : bool
-    liquid : (n, m) array or None
-        Liquid fraction, where the rupture model gives it (``jfo``).
-    violations : int
-        Cells that break the rupture condition because their state was given.
+    With `region` given, each line along the film keeps one full stretch per region besides those
+    fed by a groove under pressure: a ruptured film then stays ruptured up to the next inception.
+    Thermal films need it, since the derivative of F1/F0 could otherwise re-form film inside the
+    ruptured sector.
     """
 
-    pressure: Array
-    raw: Array
-    full: Flags
-    factor: Factor
-    steps: int
-    converged: bool
-    liquid: Array | None = None
-    violations: int = 0
+    conserves_oil: bool = True
 
-
-def solve_pressure(
-    operator: FilmOperator,
-    cavitation: Cavitation,
-    *,
-    squeeze: Array | None = None,
-    start: Flags | None = None,
-    region: NDArray[np.int64] | None = None,
-    frozen: Flags | None = None,
-) -> PressureSolution:
-    """Pressure for the operator's film.
-
-    Parameters
-    ----------
-    squeeze : (n, m) array, optional
-        dh/dt [m/s].
-    start : (n, m) bool array, optional
-        Cells taken as full in the first step (a neighbouring solution's).
-    region : (n,) int array, optional
-        Stretches of film (see `FilmMesh.region`). If given, each line along the film keeps one
-        full stretch per region besides those fed by a groove under pressure: a ruptured film then
-        stays ruptured up to the next inception. Thermal films need it, since the derivative of
-        F1/F0 could otherwise re-form film inside the ruptured sector.
-    frozen : (n, m) bool array, optional
-        The full cells, taken as given: one linear solve, `violations` telling what it leaves.
-    """
-    source = source_term(operator, squeeze)
-    film = ~operator.fixed
-    if cavitation in (Cavitation.FULL_SOMMERFELD, Cavitation.HALF_SOMMERFELD):
-        factor = factor_operator(operator, film)
-        pressure = _with_fixed(operator, factor.solve(source))
-        if cavitation is Cavitation.HALF_SOMMERFELD:
-            kept = np.where(operator.fixed, pressure, np.maximum(pressure, 0.0))
-            full = film & (kept > 0.0)
-            if frozen is not None:
-                full = frozen
-                kept = np.where(full | operator.fixed, pressure, 0.0)
-            return PressureSolution(kept, pressure, full, factor, 1, True)
-        return PressureSolution(pressure, pressure, film, factor, 1, True)
-    if frozen is not None:
-        return _on_frozen_set(operator, source, frozen)
-    guess = coarse_guess(operator, source) if start is None else start
-    solution = _active_set(operator, source, film, guess & film)
-    if region is None:
-        return solution
-    allowed = film.copy()
-    _one_stretch(solution.pressure, operator.fixed, operator.interior[0], region, allowed)
-    if (solution.full & ~allowed).any():
-        again = _active_set(operator, source, allowed, solution.full & allowed)
-        return replace(again, steps=solution.steps + again.steps)
-    return solution
+    def solve(
+        self,
+        operator: FilmOperator,
+        *,
+        squeeze: Array | None = None,
+        start: Flags | None = None,
+        region: NDArray[np.int64] | None = None,
+        frozen: Flags | None = None,
+    ) -> tuple[FilmOperator, PressureSolution]:
+        """Solve the complementarity problem; see `RuptureCondition.solve`."""
+        source = source_term(operator, squeeze)
+        film = ~operator.fixed
+        if frozen is not None:
+            return operator, _on_frozen_set(operator, source, frozen)
+        guess = coarse_guess(operator, source) if start is None else start
+        solution = _active_set(operator, source, film, guess & film)
+        if region is None:
+            return operator, solution
+        allowed = film.copy()
+        _one_stretch(solution.pressure, operator.fixed, operator.interior[0], region, allowed)
+        if (solution.full & ~allowed).any():
+            again = _active_set(operator, source, allowed, solution.full & allowed)
+            return operator, replace(again, steps=solution.steps + again.steps)
+        return operator, solution
 
 
 def coarse_guess(operator: FilmOperator, source: Array) -> Flags:
@@ -180,21 +124,6 @@ def _coarsened(operator: FilmOperator) -> FilmOperator:
     )
 
 
-def source_term(operator: FilmOperator, squeeze: Array | None = None) -> Array:
-    """Right-hand side [m3/s]: Couette flow, known pressures and squeeze."""
-    source = operator.couette[0] - operator.couette[1]
-    source = source + np.sum(
-        np.where(operator.interior, 0.0, operator.conductance * operator.fixed_pressure), axis=0
-    )
-    if squeeze is not None:
-        source = source - squeeze * operator.area
-    return np.where(operator.fixed, 0.0, source)
-
-
-def _with_fixed(operator: FilmOperator, pressure: Array) -> Array:
-    return np.where(operator.fixed, operator.fixed_pressure[0], pressure)
-
-
 def _active_set(
     operator: FilmOperator, source: Array, allowed: Flags, full: Flags
 ) -> PressureSolution:
@@ -223,9 +152,9 @@ def _active_set(
         # No cell is pushed: the whole film is ruptured, which is the solution.
         factor = factor_operator(operator, ~operator.fixed)
         empty = np.zeros_like(allowed)
-        nothing = _with_fixed(operator, np.zeros_like(source))
+        nothing = with_fixed(operator, np.zeros_like(source))
         return PressureSolution(nothing, nothing, empty, factor, steps, True)
-    pressure = _with_fixed(operator, pressure)
+    pressure = with_fixed(operator, pressure)
     return PressureSolution(pressure, pressure, full, factor, steps, converged)
 
 
@@ -237,7 +166,7 @@ def _on_frozen_set(operator: FilmOperator, source: Array, full: Flags) -> Pressu
     violations = _update_set(
         operator.conductance, operator.interior, source, pressure, full, full, tolerance, update
     )
-    raw = _with_fixed(operator, pressure)
+    raw = with_fixed(operator, pressure)
     return PressureSolution(raw, raw, full, factor, 1, True, violations=int(violations))
 
 

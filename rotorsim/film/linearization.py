@@ -1,0 +1,160 @@
+"""Stiffness and damping: the discrete film linearised at its solution (Dal Eq. 6-7, corrected).
+
+Every face conducts and carries by powers of its film thickness that the flow law knows, so each
+generalised displacement q changes them by known amounts; the perturbed pressures solve the very
+matrix of the film, on its full cells, with its factor. The rupture boundary adds nothing to first
+order, since the pressure and its gradient vanish there. K_ij = -dQ_i/dq_j and C_ij = -dQ_i/dq_j-dot
+are therefore the exact derivatives of the discrete forces.
+
+The viscosity stays where it is while the journal moves: oil and walls need far longer than a turn
+to change their temperature. The other limit, a displacement so slow that the film is always in
+thermal equilibrium, is what static load tests measure (`following_stiffness`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .flow_law import COUETTE_POWER, POISEUILLE_POWER
+from .geometry import CENTER
+from .kernels import kernel
+from .operator import neighbour
+from .problem import FilmState
+from .thd import ThermalFilm, solve_thermal_film
+
+Array = NDArray[np.float64]
+
+RELATIVE_STEP = 2e-3
+"""Displacement of `following_stiffness`, relative to the thinnest film."""
+STEP_TOLERANCE = 1e-9
+"""Change of log viscosity at which a displaced film counts as converged."""
+
+
+def linearize(state: FilmState) -> tuple[Array, Array]:
+    """Return K [N/m] and C [N s/m] over the film's displacements, (q, q) each, film frame."""
+    shapes = state.problem.geometry.displacements.shapes
+    squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
+    right = np.concatenate([displacement_sources(state, shapes), -shapes[:, CENTER] * squeezed])
+    right[:, state.operator.fixed] = 0.0
+    reaction = _reaction(state, right)
+    count = len(shapes)
+    return reaction[:, :count].copy(), reaction[:, count:].copy()
+
+
+def stiffness_matrix(state: FilmState) -> Array:
+    """Return K alone [N/m], (q, q): the Jacobian of the forces with its sign turned."""
+    shapes = state.problem.geometry.displacements.shapes
+    return _reaction(state, displacement_sources(state, shapes))
+
+
+def _reaction(state: FilmState, right: Array) -> Array:
+    """-dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
+    geometry, solution = state.problem.geometry, state.solution
+    perturbed = np.where(solution.full, solution.factor.solve(right), 0.0) * state.operator.area
+    shapes = geometry.displacements.shapes[:, CENTER].reshape(-1, perturbed[0].size)
+    return -geometry.multiplicity * shapes @ perturbed.reshape(len(right), -1).T
+
+
+def displacement_sources(state: FilmState, shapes: Array) -> Array:
+    """Return what unit displacements add to each cell's continuity [m3/s per m], (q, n, m).
+
+    Parameters
+    ----------
+    state : FilmState
+    shapes : (q, 5, n, m) array
+        dh/dq, see `Displacements`.
+    """
+    operator, layers = state.operator, state.layers
+    sources = np.zeros((len(shapes), *operator.area.shape))
+    rates = np.empty((3, 0, 0)) if layers.rates is None else layers.rates
+    _sources(
+        operator.conductance, operator.interior, operator.fixed_pressure, operator.face_thickness,
+        operator.couette, operator.fixed, state.solution.raw, shapes, layers.f2, layers.f2_axial,
+        layers.g, rates, state.center_thickness, sources,
+    )  # fmt: skip
+    return sources
+
+
+@kernel
+def _sources(
+    conductance, interior, fixed_pressure, face_h, couette, fixed, pressure, shapes, f2, f2_axial,
+    g, rates, center_h, sources,
+):  # fmt: skip
+    n, m = pressure.shape
+    varying = rates.shape[1] > 0
+    for i in range(n):
+        for j in range(m):
+            if fixed[i, j]:
+                continue
+            for face in range(4):
+                k, q = neighbour(face, i, j, n, m)
+                joined = interior[face, i, j]
+                beyond = pressure[k, q] if joined else fixed_pressure[face, i, j]
+                driven = conductance[face, i, j] * (beyond - pressure[i, j])
+                carried = 0.0
+                if face == 0:
+                    carried = couette[0, i, j]
+                elif face == 1:
+                    carried = -couette[1, i, j]
+                rate = (POISEUILLE_POWER * driven + COUETTE_POWER * carried) / face_h[face, i, j]
+                for d in range(shapes.shape[0]):
+                    change = shapes[d, 1 + face, i, j]
+                    if joined:
+                        change = 0.5 * (change + shapes[d, 1 + (face ^ 1), k, q])
+                    sources[d, i, j] += rate * change
+                if not varying:
+                    continue
+                # What the flow law changes at both cells behind the face, in their shares.
+                mobility = f2 if face < 2 else f2_axial
+                law = 0 if face < 2 else 1
+                weight, share = 1.0, 1.0
+                if joined:
+                    weight = mobility[i, j] / (mobility[i, j] + mobility[k, q])
+                    share = (1.0 - g[i, j]) / (2.0 - g[i, j] - g[k, q])
+                own = weight * driven * rates[law, i, j] + share * carried * rates[2, i, j]
+                own /= center_h[i, j]
+                other = 0.0
+                if joined:
+                    other = (1.0 - weight) * driven * rates[law, k, q]
+                    other += (1.0 - share) * carried * rates[2, k, q]
+                    other /= center_h[k, q]
+                for d in range(shapes.shape[0]):
+                    sources[d, i, j] += own * shapes[d, 0, i, j] + other * shapes[d, 0, k, q]
+
+
+def following_stiffness(film: ThermalFilm) -> tuple[Array, bool]:
+    """Return K, (q, q), with the temperature following the displacements (quasi-static).
+
+    By central differences of converged films. The mesh stays where it is and every cell keeps its
+    state (full or ruptured), as they do in the linearised film.
+
+    Returns
+    -------
+    (q, q) array
+        K_ij = -dQ_i/dq_j, film frame.
+    bool
+        Whether all displaced films converged.
+    """
+    state = film.state
+    displacements = state.problem.geometry.displacements
+    relative = RELATIVE_STEP * state.min_thickness / state.problem.bearing.radial_clearance
+    columns, converged = [], True
+    for number, scale in enumerate(displacements.scales):
+        step = np.zeros(len(displacements.scales))
+        step[number] = relative * scale
+        ahead, behind = (
+            solve_thermal_film(
+                state.problem,
+                state.displacement + sign * step,
+                initial=replace(film.heat, temperature=film.heat.temperature.copy()),
+                full=state.solution.full,
+                tolerance=STEP_TOLERANCE,
+            )
+            for sign in (1.0, -1.0)
+        )
+        columns.append((behind.state.force - ahead.state.force) / (2.0 * step[number]))
+        converged = converged and ahead.converged and behind.converged
+    return np.stack(columns, axis=1), converged

@@ -1,0 +1,28 @@
+"""Rupture conditions: what happens where the film would pull; each is one object.
+
+`rupture_condition` chooses it by its name, once; whoever needs to know how a film ruptures asks the
+object.
+"""
+
+from __future__ import annotations
+
+from ...model import Cavitation
+from .base import Factor, PressureSolution, RuptureCondition
+from .mass_conserving import MassConserving
+from .reynolds import Reynolds
+from .sommerfeld import FullSommerfeld, HalfSommerfeld
+
+_CONDITIONS: dict[Cavitation, RuptureCondition] = {
+    Cavitation.FULL_SOMMERFELD: FullSommerfeld(),
+    Cavitation.HALF_SOMMERFELD: HalfSommerfeld(),
+    Cavitation.REYNOLDS: Reynolds(),
+    Cavitation.JFO: MassConserving(),
+}
+
+
+def rupture_condition(name: Cavitation) -> RuptureCondition:
+    """Return the rupture condition of that name."""
+    return _CONDITIONS[name]
+
+
+__all__ = ["Factor", "PressureSolution", "RuptureCondition", "rupture_condition"]

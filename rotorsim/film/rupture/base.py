@@ -1,0 +1,138 @@
+"""What every rupture condition takes and gives."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..banded import factor_operator
+from ..operator import FilmOperator
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+class Factor(Protocol):
+    """A factored film matrix."""
+
+    def solve(self, right: Array) -> Array:
+        """Solve for (..., n, m) right-hand sides [m3/s]."""
+        ...
+
+
+@dataclass(frozen=True)
+class PressureSolution:
+    """Pressure and where the film is full.
+
+    Attributes
+    ----------
+    pressure : (n, m) array
+        Gauge [Pa]; groove cells carry the supply pressure.
+    raw : (n, m) array
+        Before negative pressures are dropped (``half_sommerfeld``); else the same.
+    full : (n, m) bool array
+        Cells whose continuity the pressure solves.
+    factor : Factor
+        Of the matrix on those cells, for further right-hand sides.
+    steps : int
+        Linear solves.
+    converged : bool
+    liquid : (n, m) array or None
+        Liquid fraction, where the condition conserves mass.
+    violations : int
+        Cells that break the rupture condition because their state was given.
+    """
+
+    pressure: Array
+    raw: Array
+    full: Flags
+    factor: Factor
+    steps: int
+    converged: bool
+    liquid: Array | None = None
+    violations: int = 0
+
+
+class RuptureCondition(Protocol):
+    """What the film does where it would pull."""
+
+    conserves_mass: bool
+    """Whether the Couette flow carries the liquid fraction, so that no oil is lost or made."""
+    conserves_oil: bool
+    """Whether the oil that leaves the full film is kept account of: all but ``half_sommerfeld``,
+    whose full film is not in balance with itself, and the film that does not rupture."""
+
+    def solve(
+        self,
+        operator: FilmOperator,
+        *,
+        squeeze: Array | None = None,
+        start: Flags | None = None,
+        region: NDArray[np.int64] | None = None,
+        frozen: Flags | None = None,
+    ) -> tuple[FilmOperator, PressureSolution]:
+        """Solve for the pressure of the operator's film.
+
+        Parameters
+        ----------
+        operator : FilmOperator
+        squeeze : (n, m) array, optional
+            dh/dt [m/s].
+        start : (n, m) bool array, optional
+            Cells taken as full in the first step (a neighbouring solution's).
+        region : (n,) int array, optional
+            Stretches of film (see `FilmMesh.region`), where a ruptured film must stay ruptured up
+            to the next inception.
+        frozen : (n, m) bool array, optional
+            The full cells, taken as given: one linear solve, `violations` telling what it leaves.
+
+        Returns
+        -------
+        FilmOperator
+            With the Couette flow that the ruptured film carries.
+        PressureSolution
+        """
+        ...
+
+    def squeezed_area(self, operator: FilmOperator, solution: PressureSolution) -> Array:
+        """Return the area of each cell in which oil is squeezed when the film thins [m2]."""
+        ...
+
+    def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
+        """Factor `operator`, a variant of the solution's own, on the solution's full cells."""
+        ...
+
+
+class ConnectedFilm:
+    """What the conditions share that solve for the pressure alone."""
+
+    conserves_mass: bool = False
+    conserves_oil: bool = False
+
+    def squeezed_area(self, operator: FilmOperator, solution: PressureSolution) -> Array:
+        """Return the whole area of each cell [m2]."""
+        del solution
+        return operator.area
+
+    def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
+        """Factor `operator` on the solution's full cells."""
+        return factor_operator(operator, solution.full)
+
+
+def source_term(operator: FilmOperator, squeeze: Array | None = None) -> Array:
+    """Return the right-hand side [m3/s]: Couette flow, known pressures and squeeze."""
+    source = operator.couette[0] - operator.couette[1]
+    source = source + np.sum(
+        np.where(operator.interior, 0.0, operator.conductance * operator.fixed_pressure), axis=0
+    )
+    if squeeze is not None:
+        source = source - squeeze * operator.area
+    return np.where(operator.fixed, 0.0, source)
+
+
+def with_fixed(operator: FilmOperator, pressure: Array) -> Array:
+    """Return `pressure` with that of the grooves in their cells."""
+    return np.where(operator.fixed, operator.fixed_pressure[0], pressure)

@@ -1,0 +1,60 @@
+"""Films that bear any tension (full Sommerfeld), or drop it afterwards (half, Guembel)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..banded import factor_operator
+from ..operator import FilmOperator
+from .base import ConnectedFilm, Factor, PressureSolution, source_term, with_fixed
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+class FullSommerfeld(ConnectedFilm):
+    """No rupture: negative pressures stay."""
+
+    def solve(
+        self,
+        operator: FilmOperator,
+        *,
+        squeeze: Array | None = None,
+        start: Flags | None = None,
+        region: NDArray[np.int64] | None = None,
+        frozen: Flags | None = None,
+    ) -> tuple[FilmOperator, PressureSolution]:
+        """Solve once; see `RuptureCondition.solve`."""
+        del start, region, frozen
+        film = ~operator.fixed
+        factor = factor_operator(operator, film)
+        pressure = with_fixed(operator, factor.solve(source_term(operator, squeeze)))
+        return operator, PressureSolution(pressure, pressure, film, factor, 1, True)
+
+
+class HalfSommerfeld(ConnectedFilm):
+    """Negative pressures of the unruptured film are dropped."""
+
+    def solve(
+        self,
+        operator: FilmOperator,
+        *,
+        squeeze: Array | None = None,
+        start: Flags | None = None,
+        region: NDArray[np.int64] | None = None,
+        frozen: Flags | None = None,
+    ) -> tuple[FilmOperator, PressureSolution]:
+        """Solve once and keep what is positive; see `RuptureCondition.solve`."""
+        del start, region
+        film = ~operator.fixed
+        factor = factor_operator(operator, film)
+        raw = with_fixed(operator, factor.solve(source_term(operator, squeeze)))
+        full = film & (raw > 0.0) if frozen is None else frozen
+        kept = np.where(full | operator.fixed, raw, 0.0)
+        return operator, PressureSolution(kept, raw, full, factor, 1, True)
+
+    def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
+        """Factor `operator` on all cells: the unruptured film is perturbed."""
+        del solution
+        return factor_operator(operator, ~operator.fixed)
