@@ -50,20 +50,21 @@ def _parser() -> argparse.ArgumentParser:
         prog="python examples/dal_paper",
         description="Compute the figures and tables of A. Dal's paper; judge every claim.",
     )
-    parser.add_argument("--output", type=Path, default=Path(), metavar="DIR",
-                        help="folder of dal.html and the CSV files (default: this one)")  # fmt: skip
-    parser.add_argument("--coarse", action="store_true", help="half the mesh: for a quick look")
-    parser.add_argument("--docs", type=Path, metavar="DIR",
-                        help="write the documentation's page in this folder as well")  # fmt: skip
-    parser.add_argument("--workers", type=_positive, default=os.cpu_count() or 1, metavar="N",
-                        help="number of processes (default: one for each core)")  # fmt: skip
+    option = parser.add_argument
+    option("--output", type=Path, default=Path(), metavar="DIR",
+           help="folder of dal.html and the CSV files (default: this one)")  # fmt: skip
+    option("--coarse", action="store_true", help="half the mesh: for a quick look")
+    option("--docs", type=Path, metavar="DIR",
+           help="write the documentation's page in this folder as well")  # fmt: skip
+    option("--workers", type=_positive, default=os.cpu_count() or 1, metavar="N",
+           help="number of processes (default: one for each core)")  # fmt: skip
     return parser
 
 
 def _positive(text: str) -> int:
     number = int(text)
     if number < 1:
-        raise ValueError
+        raise argparse.ArgumentTypeError(f"must be 1 or more, not {text}")
     return number
 
 

@@ -334,7 +334,7 @@ def least_reduced(r: Results, wanted: str, *names: str) -> Evidence:
 
 def cross_damping_most_reduced(r: Results) -> Evidence:
     """Return whether heating lowers each cross damping more than each direct one, 100 um."""
-    fall = dict(zip(DAMPING, _reductions(r, DAMPING)[:, 0], strict=True))
+    fall: dict[str, float] = dict(zip(DAMPING, _reductions(r, DAMPING)[:, 0], strict=True))
     pairs = [(cross, direct) for cross in ("cxy", "cyx") for direct in ("cxx", "cyy")]
     more = ", ".join(f"{name} {x:.1f} %" for name, x in fall.items())
     return _share([fall[a] > fall[b] for a, b in pairs], "comparisons", more)

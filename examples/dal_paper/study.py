@@ -155,9 +155,8 @@ class Job:
             **self.changes,
         }
         # Strings, numbers and lists of them are written alike in JSON and TOML.
-        return rs.Scenario.from_text(
-            "\n".join(f"{k} = {json.dumps(v)}" for k, v in entries.items())
-        )
+        lines = [f"{key} = {json.dumps(value)}" for key, value in entries.items()]
+        return rs.Scenario.from_text("\n".join(lines))
 
 
 def jobs(mesh: Mesh) -> list[Job]:
@@ -292,9 +291,8 @@ class Results:
         """Return the points of figures and tables that did not converge, without the variants."""
         lost = [f"film {key}: {p.status.value}" for key, p in self.films.items() if not p.converged]
         for name, group in (("curve", self.curves), ("Fig. 2", self.validation)):
-            status = group["status"].to_series().dropna()
-            bad = status[status != "converged"]
-            lost += [f"{name} {key}: {text}" for key, text in bad.items()]
+            status: pd.Series = group["status"].to_series().dropna()
+            lost += [f"{name} {key}: {end}" for key, end in status.items() if end != "converged"]
         return lost
 
 

@@ -11,9 +11,8 @@ from .control_command import control
 from .file_commands import export, new, view
 from .film_commands import check, solve, table
 from .orbit_command import orbit
-from .output import guarded
+from .output import WRONG_INPUT, Output, guarded
 from .report_command import report
-from .reproduce_command import reproduce
 from .run_command import run
 from .stability_command import stability
 
@@ -59,6 +58,14 @@ for command in (
     view,
     export,
     new,
-    reproduce,
 ):
     app.command()(guarded(command))
+
+
+@app.command(
+    hidden=True, context_settings={"ignore_unknown_options": True, "allow_extra_args": True}
+)
+def reproduce() -> None:
+    """Name what replaced this command."""
+    Output().complain("reproduce has left the program; the paper is now: python examples/dal_paper")
+    raise typer.Exit(WRONG_INPUT)

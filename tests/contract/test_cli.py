@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 QUICK = ROOT / "scenarios" / "quick.toml"
 COMMANDS = (
     *("run", "check", "solve", "table", "stability", "orbit", "report", "view", "export", "new"),
-    *("control", "reproduce"),
+    "control",
 )
 POINT_KEYS = (
     "status thermal_model cavitation speed radial_clearance eccentricity_ratio attitude_angle load "
@@ -122,6 +122,13 @@ def test_importing_the_package_loads_nothing_but_itself():
         [sys.executable, "-c", code], env=environment(), capture_output=True, text=True, check=True
     )
     assert done.stdout.split() == ["False", "False"]
+
+
+def test_a_removed_command_names_its_successor(here):
+    done = here("reproduce", "dal", "--coarse", "--output", "out")
+    assert done.returncode == 2
+    assert "python examples/dal_paper" in done.stderr
+    assert "reproduce" not in here("--help").stdout
 
 
 def test_version(here):
