@@ -14,7 +14,7 @@ import control
 import numpy as np
 
 from rotorsim.machine.matrices import state_matrix
-from rotorsim.machine.rates import decay_rate_map
+from rotorsim.machine.rates import growth_rate_map
 
 POINTS, MASSES, SAMPLE, REPEATS = 1000, 1000, 2000, 5
 
@@ -47,10 +47,10 @@ def main() -> None:
     k, c, mass = coefficients()
     cells = POINTS * MASSES
     start = time.perf_counter()
-    decay_rate_map(k[:1], c[:1], mass[:1])
+    growth_rate_map(k[:1], c[:1], mass[:1])
     first = time.perf_counter() - start
-    mine = median_time(lambda: decay_rate_map(k, c, mass))
-    rates = decay_rate_map(k, c, mass)
+    mine = median_time(lambda: growth_rate_map(k, c, mass))
+    rates = growth_rate_map(k, c, mass)
 
     stack = state_matrix(k[:, None], c[:, None], mass[::10])
     dense = median_time(lambda: np.linalg.eigvals(stack)) * 10.0
@@ -68,7 +68,7 @@ def main() -> None:
     print(f"{cells:,} cells; median of {REPEATS}; first call {first:.2f} s (loading the kernel)")
     print(f"{'method':<34}{'time [s]':>10}{'us/cell':>10}{'ratio':>8}{'difference':>12}")
     for name, seconds, difference in (
-        ("rotorsim decay_rate_map", mine, 0.0),
+        ("rotorsim growth_rate_map", mine, 0.0),
         ("numpy.linalg.eigvals, stacked", dense, error.max()),
         ("loop over python-control poles", loop, loop_error.max()),
     ):

@@ -70,6 +70,14 @@ def read(path: str | Path) -> xr.Dataset:
 
 
 def _check_provenance(dataset: xr.Dataset, source: Path) -> None:
+    if "decay_rate" in dataset:
+        raise TableError(
+            "decay_rate was the largest real part of the eigenvalues in maps and its negative in "
+            "JSON; both are now growth_rate, positive when unstable: make this file again with "
+            "`rotorsim stability`",
+            source=source,
+            key="decay_rate",
+        )
     version = dataset.attrs.get("rotorsim_table_version")
     if version is None:
         raise TableError(

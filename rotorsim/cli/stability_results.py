@@ -39,7 +39,7 @@ def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
             for field in dataclasses.fields(curve)
             if field.name not in ("choices", "rotor", "mass")
         },
-        "decay_rate": curve.decay_rate,
+        "growth_rate": curve.growth_rate,
     }
     if modes is not None:
         row["thresholds"] = [dataclasses.asdict(one) for one in modes.thresholds]
@@ -51,7 +51,7 @@ def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """The least stable oscillating mode over speed."""
     from ..study.stability import whirl_word
 
-    head = ("rpm", "mode", "Hz", "f/rev", "damping ratio", "log decrement", "decay 1/s", "whirl")
+    head = ("rpm", "mode", "Hz", "f/rev", "damping ratio", "log decrement", "growth 1/s", "whirl")
     table = grid(f"Least stable mode: {curve_title(curve)}", *head)
     found = modes.branches
     if not found.eigenvalues.shape[1]:
@@ -66,7 +66,7 @@ def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
             number(frequency / float(speed), 3),
             number(float(found.damping_ratio[i, k]), 3),
             number(float(found.log_decrement[i, k]), 3),
-            number(-float(found.eigenvalues[i, k].real)),
+            number(float(found.eigenvalues[i, k].real)),
             whirl_word(float(modes.sense[i, k])),
         )
     return table
@@ -114,11 +114,11 @@ def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell])
 
 
 def plane_document(plane: Plane) -> dict[str, Any]:
-    """A map for JSON; `decay_rate` above 0 is stable, as everywhere on the command line."""
+    """A map for JSON."""
     names = ("mass_margin", "critical_mass", "whirl_frequency_ratio")
     models = {
         model: {
-            "decay_rate": plane.decay(model),
+            "growth_rate": plane.growth(model),
             "verdict": plane.values("verdict", model),
             **{
                 name: plane.values(name, model)
@@ -166,7 +166,7 @@ def _name(dimension: str) -> str:
 
 
 def _border_table(plane: Plane) -> Table:
-    """For some x: the y at which the verdict changes, by linear interpolation of the decay rate."""
+    """For some x: the y at which the verdict changes, interpolated linearly in the growth rate."""
     (xu, xf, xo), (yu, yf, yo) = _SHOWN[plane.x], _SHOWN[plane.y]
     x, y = (np.asarray(plane.dataset[name].values, dtype=float) for name in (plane.x, plane.y))
     names = [f"{model}: {_name(plane.y)} {yu}" for model in plane.models]
@@ -174,11 +174,13 @@ def _border_table(plane: Plane) -> Table:
     for i in np.unique(np.linspace(0, x.size - 1, min(x.size, 8)).round().astype(int)):
         cells = []
         for model in plane.models:
-            decay = plane.decay(model)[i]
-            at = np.flatnonzero(decay[:-1] * decay[1:] < 0.0)
-            border = [y[j] + (y[j + 1] - y[j]) * decay[j] / (decay[j] - decay[j + 1]) for j in at]
-            known = decay[np.isfinite(decay)]
-            all_of_it = "stable" if known.size and known.min() > 0.0 else "unstable"
+            growth = plane.growth(model)[i]
+            at = np.flatnonzero(growth[:-1] * growth[1:] < 0.0)
+            border = [
+                y[j] + (y[j + 1] - y[j]) * growth[j] / (growth[j] - growth[j + 1]) for j in at
+            ]
+            known = growth[np.isfinite(growth)]
+            all_of_it = "stable" if known.size and known.max() < 0.0 else "unstable"
             words = [_short(value * yf + yo) for value in border]
             cells.append(", ".join(words) if words else all_of_it if known.size else "-")
         table.add_row(_short(float(x[i]) * xf + xo), *cells)
@@ -207,7 +209,7 @@ def study_document(study: ToleranceStudy) -> dict[str, Any]:
             name: dict(
                 zip(map(str, _QUANTILES), study.samples.quantile(name, _QUANTILES), strict=True)
             )
-            for name in ("threshold_speed", "critical_mass", "decay_rate")
+            for name in ("threshold_speed", "critical_mass", "growth_rate")
         },
         "stable_throughout": float(np.nanmean(outputs["stable_throughout"])),
         "unstable_throughout": float(np.nanmean(outputs["unstable_throughout"])),
@@ -230,7 +232,7 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
     rows = (
         ("threshold speed rpm", "threshold_speed", RPM),
         ("critical mass kg", "critical_mass", 1.0),
-        ("decay rate 1/s", "decay_rate", 1.0),
+        ("growth rate 1/s", "growth_rate", 1.0),
     )
     for text, name, factor in rows:
         nominal = study.nominal[name]
@@ -239,7 +241,7 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
         cells = ["-" if v is None or not math.isfinite(v) else _short(v) for v in (first, *found)]
         table.add_row(text, *cells)
     inputs = grid(
-        "What matters (for the decay rate)", "input", "rank correlation", "share of variance"
+        "What matters (for the growth rate)", "input", "rank correlation", "share of variance"
     )
     for name, value in study.importance.items():
         share = study.share_of_variance[name]

@@ -23,7 +23,7 @@ def curve_table(curve: StabilityCurve) -> Table:
     rigid = curve.eigenvalues is None or curve.mass is not None
     head = ["rpm", "M_crit kg", "M c w2/W", "whirl ratio", "verdict"] if rigid else ["rpm"]
     if curve.eigenvalues is not None:
-        head += ["decay 1/s", "whirl rpm"] if rigid else ["verdict", "decay 1/s", "whirl rpm"]
+        head += ["growth 1/s", "whirl rpm"] if rigid else ["verdict", "growth 1/s", "whirl rpm"]
     table = grid(curve_title(curve), *head)
     for index, speed in enumerate(curve.speed):
         cells = [f"{speed * RPM:.0f}"]
@@ -35,7 +35,7 @@ def curve_table(curve: StabilityCurve) -> Table:
                 known = math.isfinite(slowest.real)
                 said = "stable" if slowest.real < 0.0 else "unstable"
                 cells.append(said if known else VERDICTS[""])
-            cells += [number(-slowest.real), number(abs(slowest.imag) * RPM)]
+            cells += [number(slowest.real), number(abs(slowest.imag) * RPM)]
         table.add_row(*cells)
     return table
 

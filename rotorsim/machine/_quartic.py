@@ -178,7 +178,7 @@ def _largest_real_part(
 
 @nb.njit(cache=True, error_model="numpy")
 def _fill_row(k: np.ndarray, c: np.ndarray, mass: np.ndarray, rate: np.ndarray) -> None:
-    """Decay rates of one operating point, (4,) stiffness and damping, with every mass."""
+    """Growth rates of one operating point, (4,) stiffness and damping, with every mass."""
     # The differences are formed before anything is scaled, so that nearly like modes stay exact.
     dc, dk = 0.5 * (c[0] - c[3]), 0.5 * (k[0] - k[3])
     n2 = dc * dc + c[1] * c[2]
@@ -214,7 +214,7 @@ def _fill_row(k: np.ndarray, c: np.ndarray, mass: np.ndarray, rate: np.ndarray) 
 def fill_rates(
     stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray, rate: np.ndarray
 ) -> None:
-    """Decay rates of (P, 4) stiffness and damping x (Q,) masses into the (P, Q) array `rate`."""
+    """Growth rates of (P, 4) stiffness and damping x (Q,) masses into the (P, Q) array `rate`."""
     for i in range(stiffness.shape[0]):
         _fill_row(stiffness[i], damping[i], mass, rate[i])
 
@@ -223,6 +223,6 @@ def fill_rates(
 def fill_rates_pairwise(
     stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray, rate: np.ndarray
 ) -> None:
-    """Decay rates of (P, 4) stiffness and damping with (P,) masses into the (P,) array `rate`."""
+    """Growth rates of (P, 4) stiffness and damping with (P,) masses into the (P,) array `rate`."""
     for i in range(stiffness.shape[0]):
         _fill_row(stiffness[i], damping[i], mass[i : i + 1], rate[i : i + 1])

@@ -238,18 +238,18 @@ def proportional_derivative(
 def design_pd(
     coefficients: Coefficients,
     mass: float,
-    decay_rate: float,
+    growth_rate: float,
     stiffness: float = 0.0,
     max_force: float = np.inf,
 ) -> StateFeedback:
-    """Least derivative gain with which every eigenvalue has a real part of `decay_rate` or less.
+    """Least derivative gain with which every eigenvalue has a real part of `growth_rate` or less.
 
     Parameters
     ----------
     coefficients : Coefficients
     mass : float
         [kg]
-    decay_rate : float
+    growth_rate : float
         Wanted largest real part, zero or negative [1/s].
     stiffness : float
         Proportional gain [N/m].
@@ -261,32 +261,32 @@ def design_pd(
     InputError
         No derivative gain reaches it: more damping makes the slow modes slower still.
     """
-    if not decay_rate <= 0.0:
-        raise InputError("must be 0 or below (1/s)", key="decay_rate", value=decay_rate)
+    if not growth_rate <= 0.0:
+        raise InputError("must be 0 or below (1/s)", key="growth_rate", value=growth_rate)
     k = coefficients.stiffness + stiffness * np.eye(2)
 
     def rate(added: float) -> float:
         a = state_matrix(k, coefficients.damping + added * np.eye(2), mass)
         return float(np.linalg.eigvals(a).real.max())
 
-    if rate(0.0) <= decay_rate:
+    if rate(0.0) <= growth_rate:
         return proportional_derivative(stiffness, 0.0, max_force)
     unit = np.sqrt(mass * np.abs(k).max())
     trials = unit * np.geomspace(1e-6, 1e3, 400)
-    good = np.flatnonzero([rate(d) <= decay_rate for d in trials])
+    good = np.flatnonzero([rate(d) <= growth_rate for d in trials])
     if not good.size:
         best = min(rate(d) for d in trials)
         raise InputError(
             f"no derivative gain reaches it; the best largest real part is {best:.4g} 1/s, "
             "a proportional gain may help",
-            key="decay_rate",
-            value=decay_rate,
+            key="growth_rate",
+            value=growth_rate,
         )
     high = float(trials[good[0]])
     low = float(trials[good[0] - 1]) if good[0] else 0.0
     while high - low > 1e-12 * high:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if rate(middle) <= decay_rate else (middle, high)
+        low, high = (low, middle) if rate(middle) <= growth_rate else (middle, high)
     return proportional_derivative(stiffness, high, max_force)
 
 

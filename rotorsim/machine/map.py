@@ -1,4 +1,4 @@
-"""Stability maps: verdict and decay rate over everything in a table, times mass."""
+"""Stability maps: verdict and growth rate over everything in a table, times mass."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..bearing.table import CoefficientTable
 from ..bearing.whirl import rigid_thresholds, routh_coefficients
 from ..errors import InputError
-from .rates import decay_rate_map
+from .rates import growth_rate_map
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +28,7 @@ class StabilityMap:
     Attributes
     ----------
     dataset : xarray.Dataset
-        Over the table's dimensions and ``mass``: ``decay_rate`` [1/s] (largest real part of the
+        Over the table's dimensions and ``mass``: ``growth_rate`` [1/s] (largest real part of the
         eigenvalues), ``verdict`` (1 stable, 0 unstable, -1 unknown), ``mass_margin`` (1 - mass
         over critical mass, NaN without a threshold). Without ``mass``: ``critical_mass`` [kg],
         ``whirl_frequency_ratio``, ``stability``. Without ``thermal_model``, where the table has
@@ -90,7 +90,7 @@ class StabilityMap:
 def stability_map(
     table: CoefficientTable, mass: ArrayLike, speed: ArrayLike | None = None
 ) -> StabilityMap:
-    """Decay rate and verdict over everything in the table times mass.
+    """Growth rate and verdict over everything in the table times mass.
 
     Parameters
     ----------
@@ -188,9 +188,9 @@ def _dataset(
         name: (dims, value, {"units": units, "long_name": text})
         for name, (value, units, text) in per_point.items()
     }
-    data["decay_rate"] = (
+    data["growth_rate"] = (
         over_mass,
-        decay_rate_map(stiffness, damping, masses),
+        growth_rate_map(stiffness, damping, masses),
         {"units": "s-1", "long_name": "largest real part of the eigenvalues"},
     )
     data["verdict"] = (

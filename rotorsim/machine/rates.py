@@ -1,4 +1,4 @@
-"""Decay rates of rigid rotors by the million."""
+"""Growth rates of rigid rotors by the million."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def _balanced(a: Array) -> Array:
     return result
 
 
-def decay_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
-    """Largest real part of the four eigenvalues: negative where the rotor is stable.
+def growth_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
+    """Largest real part of the four eigenvalues: positive where the rotor is unstable.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def decay_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Ar
 
     Examples
     --------
-    >>> decay_rates([[1.0, 5.0], [-5.0, 1.0]], np.eye(2), [0.02, 0.04, 0.08]).round(12) + 0.0
+    >>> growth_rates([[1.0, 5.0], [-5.0, 1.0]], np.eye(2), [0.02, 0.04, 0.08]).round(12) + 0.0
     array([-0.48473118,  0.        ,  0.62287624])
     """
     k, c = np.asarray(stiffness, dtype=float), np.asarray(damping, dtype=float)
@@ -88,8 +88,8 @@ def decay_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Ar
     return rate.reshape(lead)
 
 
-def decay_rate_map(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
-    """Decay rates of every operating point with every mass, shape (..., n_mass) [1/s].
+def growth_rate_map(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
+    """Growth rates of every operating point with every mass, shape (..., n_mass) [1/s].
 
     Parameters
     ----------

@@ -86,14 +86,24 @@ class Propagation:
         Samples where it is not defined count as not below, failed ones not at all: with
         ``critical_mass`` and the rotor's mass this is the probability of instability.
         """
-        values = self._output(output)
-        keep = np.ones(values.size, dtype=bool)
+        return self._share(self._output(output) < limit)
+
+    def probability_above(self, output: str, limit: float) -> tuple[float, float]:
+        """Probability that an output is above `limit`, and its standard error.
+
+        As `probability_below`: of ``growth_rate`` above 0 it is the probability of instability.
+        """
+        return self._share(self._output(output) > limit)
+
+    def _share(self, true: NDArray[np.bool_]) -> tuple[float, float]:
+        """Share of the samples without a failure that are true, and its standard error."""
+        keep = np.ones(true.size, dtype=bool)
         keep[[i for i, _ in self.failures]] = False
         n = int(keep.sum())
         if n == 0:
             return math.nan, math.nan
-        p = float(np.mean(values[keep] < limit))
-        # Wilson's centre keeps the error above zero where no sample, or every one, is below.
+        p = float(np.mean(true[keep]))
+        # Wilson's centre keeps the error above zero where no sample, or every one, is true.
         centre = (p * n + 2.0) / (n + 4.0)
         return p, math.sqrt(centre * (1.0 - centre) / (n + 4.0))
 

@@ -91,8 +91,8 @@ def _maps(results: Results) -> Iterator[tuple[str, Figure]]:
         figure = stability_map(
             plane.speed,
             plane.mass,
-            plane.isothermal_decay,
-            plane.heated_decay,
+            plane.isothermal_growth,
+            plane.heated_growth,
             operating_point=point,
             title=f"{results.scenario.title}\nc = {micro} µm",
         )

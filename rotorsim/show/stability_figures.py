@@ -71,8 +71,8 @@ def plane_figure(plane: Plane, title: str = "") -> Figure:
     cold = "isothermal" if "isothermal" in models else models[0]
     hot = "thd" if "thd" in models else models[-1]
     heading = "\n".join(text for text in (title, held_words(dict(plane.held))) if text)
-    heated = plane.decay(hot) if hot != cold else None
-    return stability_plane(axis(plane.x), axis(plane.y), plane.decay(cold), heated, title=heading)
+    heated = plane.growth(hot) if hot != cold else None
+    return stability_plane(axis(plane.x), axis(plane.y), plane.growth(cold), heated, title=heading)
 
 
 def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tuple[str, Figure]]:

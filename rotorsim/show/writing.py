@@ -126,10 +126,10 @@ def map_pictures(results: Results) -> list[MapPicture]:
             title=f"rigid rotor, c = {plane.radial_clearance * 1e6:.4g} um",
             speed=plane.speed,
             mass=plane.mass,
-            verdict=classify(plane.isothermal_decay, plane.heated_decay),
+            verdict=classify(plane.isothermal_growth, plane.heated_growth),
             rotor_mass=results.rotor_mass,
-            isothermal_decay=plane.isothermal_decay,
-            heated_decay=plane.heated_decay,
+            isothermal_growth=plane.isothermal_growth,
+            heated_growth=plane.heated_growth,
         )
         for plane in map_planes(results.chart)
     ]

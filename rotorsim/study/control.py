@@ -36,8 +36,9 @@ class ControlWishes:
         Saturation of each axis [N].
     displacement_scale : float or None
         LQR: a displacement as bad as the full force [m]; None: a hundredth of the clearance.
-    decay_rate : float or None
-        PD: of the slowest mode [1/s]; None: a fiftieth of the shaft speed.
+    growth_rate : float or None
+        PD: largest real part to reach, zero or negative [1/s]; None: minus a fiftieth of the
+        shaft speed.
     disturbance : float or None
         Displacement from rest with which the run in time begins [m]; None: a fiftieth of the
         clearance.
@@ -49,7 +50,7 @@ class ControlWishes:
     design: Design = Design.LQR
     max_force: float = math.inf
     displacement_scale: float | None = None
-    decay_rate: float | None = None
+    growth_rate: float | None = None
     disturbance: float | None = None
     revolutions: int | None = None
 
@@ -149,7 +150,7 @@ def study_control(
         design=wishes.design,
         force_limit=wishes.max_force,
         displacement_scale=wishes.displacement_scale,
-        decay_ratio=None if wishes.decay_rate is None else wishes.decay_rate / speed,
+        decay_ratio=None if wishes.growth_rate is None else -wishes.growth_rate / speed,
     )
     feedback = design_feedback(settings, linear, mass, clearance, film.load)
     disturbance = wishes.disturbance or 0.02 * clearance

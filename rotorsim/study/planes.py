@@ -42,7 +42,7 @@ class Plane:
     held : mapping of str to float
         The others.
     dataset : xarray.Dataset
-        Over ``thermal_model``, x and y: ``decay_rate`` (largest real part [1/s]: stable below 0),
+        Over ``thermal_model``, x and y: ``growth_rate`` (largest real part [1/s]: stable below 0),
         ``verdict``, ``mass_margin`` and more, see `rotorsim.machine.StabilityMap`.
     solved_points, failed_points : int
         Films behind it, and how many of them did not converge.
@@ -65,9 +65,9 @@ class Plane:
         part = self.dataset[name].sel(thermal_model=model)
         return part.transpose(self.x, self.y).values
 
-    def decay(self, model: str) -> Array:
-        """Decay rate [1/s], above 0 where the motion dies out, (n_x, n_y)."""
-        return -self.values("decay_rate", model)
+    def growth(self, model: str) -> Array:
+        """Largest real part of the eigenvalues [1/s], above 0 where unstable, (n_x, n_y)."""
+        return self.values("growth_rate", model)
 
     @property
     def destabilised_by_heating(self) -> NDArray[np.bool_] | None:

@@ -87,9 +87,9 @@ class StabilityCurve:
     threshold_speeds: tuple[float, ...] = ()
 
     @property
-    def decay_rate(self) -> Array | None:
-        """Of the slowest mode, above 0 where the motion dies out [1/s]; None without a rotor."""
-        return None if self.eigenvalues is None else -self.eigenvalues[:, 0].real
+    def growth_rate(self) -> Array | None:
+        """Largest real part of the eigenvalues, above 0 where unstable [1/s]; None: no rotor."""
+        return None if self.eigenvalues is None else self.eigenvalues[:, 0].real
 
 
 PLAUSIBLE_WHIRL = (0.05, 2.0)
@@ -118,7 +118,7 @@ def doubts(curves: Sequence[StabilityCurve]) -> list[str]:
 
 @dataclass(frozen=True)
 class MapPlane:
-    """Stability map of one clearance: decay rates over speed and mass.
+    """Stability map of one clearance: growth rates over speed and mass.
 
     Attributes
     ----------
@@ -128,16 +128,16 @@ class MapPlane:
         [rad/s]
     mass : (m,) array
         Per bearing [kg].
-    isothermal_decay, heated_decay : (n, m) arrays
-        Above 0 where the motion dies out, NaN where unknown [1/s]. With one thermal model in the
+    isothermal_growth, heated_growth : (n, m) arrays
+        Above 0 where unstable, NaN where unknown [1/s]. With one thermal model in the
         table both are its.
     """
 
     radial_clearance: float
     speed: Array
     mass: Array
-    isothermal_decay: Array
-    heated_decay: Array
+    isothermal_growth: Array
+    heated_growth: Array
 
 
 def map_planes(chart: StabilityMap) -> list[MapPlane]:
@@ -148,16 +148,15 @@ def map_planes(chart: StabilityMap) -> list[MapPlane]:
     hot = models.index("thd") if "thd" in models else len(models) - 1
     planes = []
     for place, clearance in enumerate(dataset["radial_clearance"].values):
-        # The map's rate is the largest real part: of growth.
-        rate = dataset["decay_rate"].isel(radial_clearance=place)
-        decay = -rate.transpose("thermal_model", "speed", "mass").values
+        rate = dataset["growth_rate"].isel(radial_clearance=place)
+        growth = rate.transpose("thermal_model", "speed", "mass").values
         planes.append(
             MapPlane(
                 radial_clearance=float(clearance),
                 speed=dataset["speed"].values,
                 mass=dataset["mass"].values,
-                isothermal_decay=decay[cold],
-                heated_decay=decay[hot],
+                isothermal_growth=growth[cold],
+                heated_growth=growth[hot],
             )
         )
     return planes

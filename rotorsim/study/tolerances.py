@@ -71,7 +71,7 @@ class FilmThreshold:
         Returns
         -------
         dict
-            ``decay_rate`` at the operating speed [1/s], above 0 where stable; ``critical_mass``
+            ``growth_rate`` at the operating speed [1/s], above 0 where unstable; ``critical_mass``
             of a rigid rotor there [kg] and its ``whirl_frequency_ratio``, None without a threshold;
             ``threshold_speed`` [rad/s], the lowest at which the rotor loses its stability, None
             where none lies within the speeds; ``stable_throughout`` and ``unstable_throughout``,
@@ -98,7 +98,7 @@ class FilmThreshold:
         rates = [self._growth(point) for point in points.values()]
         found = [c.speed for c in crossings if c.becomes_unstable]
         return {
-            "decay_rate": -self._growth(at),
+            "growth_rate": self._growth(at),
             "critical_mass": at.critical_mass,
             "whirl_frequency_ratio": at.whirl_frequency_ratio,
             "threshold_speed": found[0] if found else None,
@@ -160,7 +160,7 @@ class ToleranceStudy:
     probability_of_instability, standard_error : float
         At the operating speed.
     importance : mapping of str to float
-        Rank correlation of each input with the decay rate at the operating speed, strongest first.
+        Rank correlation of each input with the growth rate at the operating speed, strongest first.
     share_of_variance : mapping of str to float
         First-order Sobol' index for the same output, by regression (see
         `rotorsim.machine.Propagation.first_order_index`); they need not add up to 1.
@@ -252,7 +252,7 @@ def study_tolerances(
     )  # fmt: skip
     if len(samples.failures) == len(next(iter(samples.inputs.values()))):
         raise InputError(f"no sample could be solved: {samples.failures[0][1]}", key="tolerances")
-    p, error = samples.probability_below("decay_rate", 0.0)
+    p, error = samples.probability_above("growth_rate", 0.0)
     return ToleranceStudy(
         thermal_model=model,
         radial_clearance=case.bearing.radial_clearance,
@@ -263,9 +263,9 @@ def study_tolerances(
         samples=samples,
         probability_of_instability=p,
         standard_error=error,
-        importance=samples.importance("decay_rate"),
-        share_of_variance=samples.first_order_index("decay_rate"),
-        explained_variance=samples.explained_variance("decay_rate"),
+        importance=samples.importance("growth_rate"),
+        share_of_variance=samples.first_order_index("growth_rate"),
+        explained_variance=samples.explained_variance("growth_rate"),
     )
 
 

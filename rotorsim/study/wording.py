@@ -101,29 +101,29 @@ def verdict_over_range(curve: StabilityCurve) -> str | None:
     """
     if curve.threshold_speeds:
         return "changes"
-    rates = [] if curve.decay_rate is None else [float(rate) for rate in curve.decay_rate]
+    rates = [] if curve.growth_rate is None else [float(rate) for rate in curve.growth_rate]
     if not rates or not all(map(math.isfinite, rates)):
         return None
-    if min(rates) > 0.0:
+    if max(rates) < 0.0:
         return "stable throughout"
-    return "unstable throughout" if max(rates) <= 0.0 else "changes"
+    return "unstable throughout" if min(rates) >= 0.0 else "changes"
 
 
 def thresholds_text(curve: StabilityCurve) -> str:
     """Threshold speeds [rpm], or which verdict holds over which speeds."""
     if curve.threshold_speeds:
         return ", ".join(f"{speed * RPM:.0f}" for speed in curve.threshold_speeds)
-    if curve.decay_rate is None:
+    if curve.growth_rate is None:
         return "-"
     known = [
         (float(speed) * RPM, float(rate))
-        for speed, rate in zip(curve.speed, curve.decay_rate, strict=True)
+        for speed, rate in zip(curve.speed, curve.growth_rate, strict=True)
         if math.isfinite(rate)
     ]
-    signs = {rate > 0.0 for _, rate in known}
-    if len(signs) != 1:
+    verdicts = {rate < 0.0 for _, rate in known}
+    if len(verdicts) != 1:
         return "-"
-    word, (first, last) = "stable" if signs.pop() else "unstable", (known[0][0], known[-1][0])
+    word, (first, last) = "stable" if verdicts.pop() else "unstable", (known[0][0], known[-1][0])
     if len(known) < len(curve.speed):
         return f"none: {word} at the {len(known)} of {len(curve.speed)} speeds known"
     return f"none: {word}, {first:.0f} to {last:.0f} rpm" if last > first else f"none: {word}"
@@ -131,9 +131,9 @@ def thresholds_text(curve: StabilityCurve) -> str:
 
 def verdict_at(curve: StabilityCurve) -> str | None:
     """``stable`` or ``unstable`` at the highest speed; None where that is not known."""
-    if curve.decay_rate is None or math.isnan(curve.decay_rate[-1]):
+    if curve.growth_rate is None or math.isnan(curve.growth_rate[-1]):
         return None
-    return "stable" if curve.decay_rate[-1] > 0.0 else "unstable"
+    return "stable" if curve.growth_rate[-1] < 0.0 else "unstable"
 
 
 def verdict_at_top(curve: StabilityCurve) -> str:

@@ -220,7 +220,7 @@ def test_stability_of_a_table(tabulated):
     for curve in said["curves"]:
         stable = np.array(curve["critical_mass"]) > 1200.0
         # The closed form and the eigenvalues must agree on the verdict.
-        assert (np.array(curve["decay_rate"]) > 0.0).tolist() == stable.tolist()
+        assert (np.array(curve["growth_rate"]) < 0.0).tolist() == stable.tolist()
     crossed = {curve["thermal_model"]: curve["threshold_speeds"] for curve in said["curves"]}
     assert crossed["isothermal"] == []
     assert len(crossed["thd"]) == 1
@@ -230,7 +230,7 @@ def test_mass_on_the_command_line_overrides_the_scenario(tabulated):
     arguments = ("stability", "coefficients/tiny.nc", "--mass", "100 kg", "--json")
     said = strict(rotorsim(*arguments, cwd=tabulated).stdout)
     assert said["mass"] == 100.0
-    assert all(min(curve["decay_rate"]) > 0.0 for curve in said["curves"])
+    assert all(max(curve["growth_rate"]) < 0.0 for curve in said["curves"])
 
 
 def test_orbit_grows_with_heating_and_decays_without_as_the_eigenvalues_say(tabulated):
@@ -239,10 +239,10 @@ def test_orbit_grows_with_heating_and_decays_without_as_the_eigenvalues_say(tabu
     said = strict(done.stdout)
     assert (tabulated / said["recording"]).stat().st_size > 10_000
     curves = strict(rotorsim("stability", "coefficients/tiny.nc", "--json", cwd=tabulated).stdout)
-    decay = {curve["thermal_model"]: curve["decay_rate"][-1] for curve in curves["curves"]}
-    assert decay["isothermal"] > 0.0 > decay["thd"]
+    growth = {curve["thermal_model"]: curve["growth_rate"][-1] for curve in curves["curves"]}
+    assert growth["isothermal"] < 0.0 < growth["thd"]
     for orbit in said["orbits"]:
-        assert orbit["growth_rate"] == pytest.approx(-decay[orbit["thermal_model"]], rel=0.01)
+        assert orbit["growth_rate"] == pytest.approx(growth[orbit["thermal_model"]], rel=0.01)
 
 
 def test_export_to_csv_reads_back_as_the_same_table(tabulated):
@@ -254,7 +254,7 @@ def test_export_to_csv_reads_back_as_the_same_table(tabulated):
         for name in ("coefficients/tiny.nc", path)
     )
     for left, right in zip(first["curves"], again["curves"], strict=True):
-        assert right["decay_rate"] == pytest.approx(left["decay_rate"], rel=1e-9)
+        assert right["growth_rate"] == pytest.approx(left["growth_rate"], rel=1e-9)
 
 
 @pytest.mark.parametrize(

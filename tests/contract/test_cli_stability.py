@@ -156,7 +156,7 @@ def test_the_table_of_a_rotor_that_is_not_rigid_speaks_of_its_own_verdict(here, 
     rows = done.stdout.split("Least stable mode")[0].splitlines()
     found = [line.split() for line in rows if "stable" in line and line[0].isdigit()]
     assert {row[1] for row in found} == {"stable", "unstable"}
-    assert all((row[1] == "stable") == (float(row[2]) > 0.0) for row in found)
+    assert all((row[1] == "stable") == (float(row[2]) < 0.0) for row in found)
 
 
 def test_a_wrong_rotor_is_refused_before_films_are_solved(here, monkeypatch):
@@ -198,8 +198,8 @@ def test_map_over_speed_and_load_is_solved_from_the_scenario(here):
     cold, hot = (np.array(found["models"][m]["verdict"]) for m in ("isothermal", "thd"))
     for model in ("isothermal", "thd"):
         one = found["models"][model]
-        decay, margin = np.array(one["decay_rate"]), np.array(one["mass_margin"], dtype=float)
-        assert np.array_equal(decay > 0.0, np.array(one["verdict"]) == 1)
+        growth, margin = np.array(one["growth_rate"]), np.array(one["mass_margin"], dtype=float)
+        assert np.array_equal(growth < 0.0, np.array(one["verdict"]) == 1)
         assert np.array_equal(margin > 0.0, np.array(one["verdict"]) == 1)
     heated = np.array(found["destabilised_by_heating"])
     assert heated.any()

@@ -16,8 +16,8 @@ from rotorsim.show.figures.style import MODEL_STYLES
 SPEED = np.linspace(100.0, 1500.0, 40)
 MASS = np.linspace(10.0, 500.0, 30)
 # Rigid-rotor-like: stable below a critical mass that falls with speed.
-COLD = 300.0 - 0.15 * SPEED[:, None] - 0.2 * MASS
-HOT = COLD - 0.08 * SPEED[:, None]
+COLD = 0.15 * SPEED[:, None] + 0.2 * MASS - 300.0
+HOT = COLD + 0.08 * SPEED[:, None]
 
 
 def film(name="thd", warm=True):
@@ -92,14 +92,14 @@ def _grey(figure, place):
     return grey.mean(), grey.std()
 
 
-def test_map_regions_stand_where_the_decay_rates_say_and_differ_in_grey():
+def test_map_regions_stand_where_the_growth_rates_say_and_differ_in_grey():
     figure = plots.stability_map(SPEED, MASS, COLD, HOT)
     rpm = SPEED * 30 / np.pi
     margin = 15.0
     regions = {
-        "stable": (margin < HOT),
-        "heating": (margin < COLD) & (-margin > HOT),
-        "unstable": (-margin > COLD),
+        "stable": (-margin > HOT),
+        "heating": (-margin > COLD) & (margin < HOT),
+        "unstable": (margin < COLD),
     }
     levels = {}
     for name, cells in regions.items():
@@ -127,8 +127,8 @@ def _grey_cells(figure):
 
 def test_regions_of_a_coarse_map_meet_and_only_unknown_cells_are_grey():
     speed, mass = np.linspace(300.0, 1500.0, 5), np.linspace(100.0, 3000.0, 30)
-    hot = 100.0 - 1e-9 * speed[:, None] ** 2 * mass * 60.0
-    cold = 100.0 - 1e-9 * speed[:, None] ** 2 * mass * 35.0
+    hot = 1e-9 * speed[:, None] ** 2 * mass * 60.0 - 100.0
+    cold = 1e-9 * speed[:, None] ** 2 * mass * 35.0 - 100.0
     figure = plots.stability_map(speed, mass, cold, hot)
     assert _grey_cells(figure) == 0.0
     assert "not computed" not in [text.get_text() for text in figure.legends[0].get_texts()]
@@ -187,8 +187,8 @@ def test_plane_of_any_two_inputs_has_its_regions_and_units():
     load = np.linspace(5.0, 20.0, 30)
     x = plots.PlaneAxis("load [kN]", load)
     y = plots.PlaneAxis("supply temperature [°C]", np.linspace(30.0, 60.0, 20))
-    cold = 10.0 + 0 * y.values - (20.0 - load[:, None])
-    figure = plots.stability_plane(x, y, cold, cold - 3.0, operating_point=(15.0, 45.0))
+    cold = (20.0 - load[:, None]) - 10.0 - 0 * y.values
+    figure = plots.stability_plane(x, y, cold, cold + 3.0, operating_point=(15.0, 45.0))
     (axes,) = figure.axes
     assert axes.get_xlabel() == "load [kN]"
     assert axes.get_ylabel() == "supply temperature [°C]"

@@ -70,8 +70,8 @@ def path(name="thd"):
 
 def contents(**changes):
     speed, mass = np.linspace(100, 1500, 12), np.linspace(10, 500, 9)
-    cold = 300.0 - 0.15 * speed[:, None] - 0.2 * mass
-    hot = cold - 0.08 * speed[:, None]
+    cold = 0.15 * speed[:, None] + 0.2 * mass - 300.0
+    hot = cold + 0.08 * speed[:, None]
     given = {
         "title": "Test",
         "summary": "The THD orbit **grows**.",
@@ -263,7 +263,7 @@ def test_thinning_keeps_the_end():
 
 
 def test_classification():
-    verdict = classify([1.0, 1.0, -1.0, -1.0, np.nan], [1.0, -1.0, -1.0, 1.0, 1.0])
+    verdict = classify([-1.0, -1.0, 1.0, 1.0, np.nan], [-1.0, 1.0, 1.0, -1.0, -1.0])
     expected = [
         Verdict.STABLE,
         Verdict.HEATING_DESTABILISES,

@@ -156,7 +156,7 @@ def test_lqr_says_which_systems_it_takes(system):
 
 
 def test_controlled_poles_agree_with_the_simulated_decay(system):
-    closed = design_pd(FILM, MASS, decay_rate=-30.0).closed_loop(system)
+    closed = design_pd(FILM, MASS, growth_rate=-30.0).closed_loop(system)
     assert rate(closed) == pytest.approx(-30.0, rel=1e-6)
     path = solve_ivp(
         lambda t, s: closed.A @ s, (0.0, 0.3), [1e-6, 0, 0, 0],
@@ -170,14 +170,14 @@ def test_controlled_poles_agree_with_the_simulated_decay(system):
 
 
 def test_pd_design_is_the_least_gain_and_says_when_there_is_none(system):
-    feedback = design_pd(FILM, MASS, decay_rate=0.0)
+    feedback = design_pd(FILM, MASS, growth_rate=0.0)
     damping = feedback.gain[0, 2]
     assert damping > 0.0
     assert rate(proportional_derivative(0.0, 0.99 * damping).closed_loop(system)) > 0.0
     assert rate(proportional_derivative(0.0, 1.01 * damping).closed_loop(system)) < 0.0
     assert np.all(design_pd(FILM, 0.5 * CRITICAL, 0.0).gain == 0.0)
     with pytest.raises(InputError, match="no derivative gain"):
-        design_pd(FILM, MASS, decay_rate=-1e6)
+        design_pd(FILM, MASS, growth_rate=-1e6)
 
 
 def test_saturation():

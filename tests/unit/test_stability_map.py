@@ -5,8 +5,8 @@ import pytest
 
 from rotorsim.bearing.table import CoefficientTable
 from rotorsim.bearing.whirl import rigid_threshold
-from rotorsim.errors import InputError, OutOfRangeError
-from rotorsim.machine.map import STABLE, UNKNOWN, UNSTABLE, stability_map
+from rotorsim.errors import InputError, OutOfRangeError, TableError
+from rotorsim.machine.map import STABLE, UNKNOWN, UNSTABLE, StabilityMap, stability_map
 from rotorsim.machine.matrices import state_matrix
 
 SPEEDS = np.array([100.0, 300.0, 500.0, 900.0])
@@ -36,8 +36,8 @@ def table(tmp_path):
 def test_every_cell_agrees_with_eigenvalues_and_closed_form(table):
     masses = np.geomspace(30.0, 3e5, 25)
     data = stability_map(table, masses).dataset
-    assert data["decay_rate"].dims == ("thermal_model", "radial_clearance", "speed", "mass")
-    rate, verdict = data["decay_rate"].values, data["verdict"].values
+    assert data["growth_rate"].dims == ("thermal_model", "radial_clearance", "speed", "mass")
+    rate, verdict = data["growth_rate"].values, data["verdict"].values
     seen = set()
     for index in np.ndindex(rate.shape[:3]):
         k, c = table.stiffness[index], table.damping[index]
@@ -77,7 +77,7 @@ def test_speeds_between_the_tabulated_ones(table):
     data = stability_map(table, [100.0, 1000.0], speeds).dataset
     one = table.at(325.0, thermal_model="thd", radial_clearance=1e-4)
     values = np.linalg.eigvals(state_matrix(one.stiffness, one.damping, 1000.0))
-    cell = data["decay_rate"].values[1, 0, np.flatnonzero(speeds == 325.0)[0], 1]
+    cell = data["growth_rate"].values[1, 0, np.flatnonzero(speeds == 325.0)[0], 1]
     assert cell == pytest.approx(values.real.max(), rel=1e-10)
     gap = data["verdict"].values[1, 1, :, 0] == UNKNOWN
     assert np.array_equal(gap, speeds > 500.0)
@@ -109,3 +109,16 @@ def test_map_is_saved(table, tmp_path):
     chart = stability_map(table, [100.0, 1000.0])
     with xr.open_dataset(chart.save(tmp_path / "map.nc"), engine="h5netcdf") as again:
         assert np.array_equal(again["verdict"].values, chart.dataset["verdict"].values)
+
+
+def test_a_file_with_the_old_sign_is_refused_and_the_new_name_given(table, tmp_path):
+    """Maps of before had the variable decay_rate."""
+    path = stability_map(table, [100.0, 1000.0]).save(tmp_path / "map.nc")
+    with pytest.raises(TableError) as found:
+        CoefficientTable.load(path)
+    assert "growth_rate" not in str(found.value)
+    old = stability_map(table, [100.0]).dataset.rename(growth_rate="decay_rate")
+    StabilityMap(old).save(path)
+    with pytest.raises(TableError, match="now growth_rate, positive when unstable") as found:
+        CoefficientTable.load(path)
+    assert found.value.key == "decay_rate"

@@ -1,4 +1,4 @@
-"""Decay rates: the compiled quartic against the dense eigenvalue solver."""
+"""Growth rates: the compiled quartic against the dense eigenvalue solver."""
 
 import time
 
@@ -7,7 +7,7 @@ import pytest
 
 from rotorsim.errors import InputError
 from rotorsim.machine.matrices import state_matrix
-from rotorsim.machine.rates import decay_rate_map, decay_rates, eigenvalues
+from rotorsim.machine.rates import eigenvalues, growth_rate_map, growth_rates
 
 N = 20_000
 
@@ -51,7 +51,7 @@ KINDS = ["any", "film", "SI", "light", "heavy", "nearly alike modes", "symmetric
 def test_same_values_as_the_dense_solver(kind):
     k, c, mass = coefficients(kind)
     reference = np.linalg.eigvals(state_matrix(k, c, mass))
-    error = np.abs(decay_rates(k, c, mass) - reference.real.max(axis=1))
+    error = np.abs(growth_rates(k, c, mass) - reference.real.max(axis=1))
     assert (error / np.abs(reference).max(axis=1)).max() < 1e-9
 
 
@@ -68,7 +68,7 @@ def test_relative_to_the_eigenvalue_itself_in_extended_precision(kind):
         s = s - (a * b - p * q) / slope
     leading = s[np.arange(len(s)), s.real.argmax(axis=1)]
     error = np.abs(
-        decay_rates(*coefficients(kind)[:2], coefficients(kind)[2])[:3000] - leading.real
+        growth_rates(*coefficients(kind)[:2], coefficients(kind)[2])[:3000] - leading.real
     )
     if np.finfo(np.longdouble).eps < 1e-18:
         assert (error / np.abs(leading)).max() < 1e-10
@@ -76,21 +76,21 @@ def test_relative_to_the_eigenvalue_itself_in_extended_precision(kind):
 
 def test_double_eigenvalues():
     # Critically damped, all four equal; and a defective pair, known to half the digits.
-    assert decay_rates(np.eye(2), 2.0 * np.eye(2), 1.0) == pytest.approx(-1.0, abs=1e-7)
-    assert decay_rates([[1.0, 1.0], [0.0, 1.0]], 0.2 * np.eye(2), 1.0) == pytest.approx(
+    assert growth_rates(np.eye(2), 2.0 * np.eye(2), 1.0) == pytest.approx(-1.0, abs=1e-7)
+    assert growth_rates([[1.0, 1.0], [0.0, 1.0]], 0.2 * np.eye(2), 1.0) == pytest.approx(
         -0.1, abs=1e-7
     )
-    assert decay_rates([[1.0, 0.0], [0.0, 0.0]], np.eye(2), 1.0) == pytest.approx(0.0, abs=1e-15)
+    assert growth_rates([[1.0, 0.0], [0.0, 0.0]], np.eye(2), 1.0) == pytest.approx(0.0, abs=1e-15)
 
 
 def test_map_is_every_point_with_every_mass():
     k, c, mass = coefficients("film")
     k, c, mass = k[:6].reshape(2, 3, 2, 2), c[:6].reshape(2, 3, 2, 2), mass[:5]
     k[1, 2, 0, 1] = np.nan
-    rates = decay_rate_map(k, c, mass)
+    rates = growth_rate_map(k, c, mass)
     assert rates.shape == (2, 3, 5)
     assert np.isnan(rates[1, 2]).all()
-    expected = decay_rates(k[:, :, None], c[:, :, None], mass)
+    expected = growth_rates(k[:, :, None], c[:, :, None], mass)
     assert np.array_equal(rates, expected, equal_nan=True)
     assert np.isfinite(rates[:1]).all()
 
@@ -98,9 +98,9 @@ def test_map_is_every_point_with_every_mass():
 @pytest.mark.parametrize("mass", [0.0, -1.0, np.nan, np.inf])
 def test_bad_mass(mass):
     with pytest.raises(InputError, match="mass"):
-        decay_rates(np.eye(2), np.eye(2), mass)
+        growth_rates(np.eye(2), np.eye(2), mass)
     with pytest.raises(InputError, match="mass"):
-        decay_rate_map(np.eye(2), np.eye(2), [1.0, mass])
+        growth_rate_map(np.eye(2), np.eye(2), [1.0, mass])
 
 
 def test_seven_times_faster_than_the_dense_solver():
@@ -116,6 +116,6 @@ def test_seven_times_faster_than_the_dense_solver():
             times.append(time.perf_counter() - start)
         return min(times)
 
-    decay_rate_map(k, c, mass)  # loads the compiled kernel
-    ratio = best(lambda: np.linalg.eigvals(stack)) / best(lambda: decay_rate_map(k, c, mass))
+    growth_rate_map(k, c, mass)  # loads the compiled kernel
+    ratio = best(lambda: np.linalg.eigvals(stack)) / best(lambda: growth_rate_map(k, c, mass))
     assert ratio > 7.0

@@ -46,7 +46,7 @@ def run(force, displacement, revolutions=100.0, **more):
 
 
 def pd(max_force=np.inf):
-    return design_pd(LINEAR, MASS, decay_rate=-30.0, max_force=max_force)
+    return design_pd(LINEAR, MASS, growth_rate=-30.0, max_force=max_force)
 
 
 def lqr(max_force=np.inf):
@@ -105,7 +105,7 @@ def test_the_least_derivative_gain_separates_holding_from_losing_the_rotor():
     system = state_space(LINEAR, MASS)
     for axis in (0, 1):
         assert loop_margins(system, feedback, axis).stable
-    least = design_pd(LINEAR, MASS, decay_rate=0.0).gain[0, 2]
+    least = design_pd(LINEAR, MASS, growth_rate=0.0).gain[0, 2]
     for factor, status in ((1.2, OrbitStatus.SETTLED), (0.7, OrbitStatus.LIMIT_CYCLE)):
         gain = np.hstack([np.zeros((2, 2)), factor * least * np.eye(2)])
         orbit = run(ActuatedForce(FILM, StateFeedback(gain), REST), SMALL, revolutions=400.0)

@@ -126,14 +126,16 @@ def film(model: str, speed: float) -> FilmSurface:
 
 def stability_picture() -> MapPicture:
     speeds, mass = SPEEDS, np.linspace(50, 12000, 60)
-    decay = {
+    growth = {
         model: np.array(
-            [[-np.linalg.eigvals(system(model, s, m)).real.max() for m in mass] for s in speeds]
+            [[np.linalg.eigvals(system(model, s, m)).real.max() for m in mass] for s in speeds]
         )
         for model in MODELS
     }
-    verdict = classify(decay["isothermal"], decay["thd"])
-    return MapPicture("c = 100 µm", speeds, mass, verdict, MASS, decay["isothermal"], decay["thd"])
+    verdict = classify(growth["isothermal"], growth["thd"])
+    return MapPicture(
+        "c = 100 µm", speeds, mass, verdict, MASS, growth["isothermal"], growth["thd"]
+    )
 
 
 def sample_contents() -> RecordingContents:

@@ -44,7 +44,7 @@ class Design(StrEnum):
     LQR = "lqr"
     """Full state feedback, optimal for a weighting of displacement against force."""
     PD = "pd"
-    """Each axis by itself: the least derivative gain that reaches the wanted decay rate."""
+    """Each axis by itself: the least derivative gain that reaches the wanted growth rate."""
 
 
 class Station(StrEnum):
@@ -105,7 +105,7 @@ class ActuatorSettings:
     damping : float or None
         PD: derivative gain [N s/m]; None: the least that reaches `decay_ratio`.
     decay_ratio : float or None
-        PD: decay rate of the slowest motion over the shaft's speed; None: a fiftieth.
+        PD: minus the largest growth rate, over the shaft's speed; None: a fiftieth.
     """
 
     design: Design = Design.LQR

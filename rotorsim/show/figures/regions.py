@@ -45,8 +45,8 @@ _REGIONS = (
 def stability_plane(
     x: PlaneAxis,
     y: PlaneAxis,
-    isothermal_decay: Array,
-    heated_decay: Array | None = None,
+    isothermal_growth: Array,
+    heated_growth: Array | None = None,
     operating_point: tuple[float, float] | None = None,
     title: str = "",
     ax: Axes | None = None,
@@ -58,8 +58,8 @@ def stability_plane(
     ----------
     x, y : PlaneAxis
         With n and m values.
-    isothermal_decay, heated_decay : (n, m) arrays
-        Decay rates, positive where stable, NaN where unknown [1/s]. With one of them only, the
+    isothermal_growth, heated_growth : (n, m) arrays
+        Growth rates, positive where unstable, NaN where unknown [1/s]. With one of them only, the
         map knows stable and unstable.
     operating_point : (x, y), optional
         Marked by a star, in the axes' units.
@@ -77,18 +77,18 @@ def stability_plane(
     ax = axes_or_new(ax, (6.6, 4.9))
     # The least of two rates bends within a coarse cell: only on a fine grid do the regions meet.
     along, across = _finer(x.values), _finer(y.values)
-    isothermal_decay = _bilinear(x.values, y.values, isothermal_decay, along, across)
-    if heated_decay is not None:
-        heated_decay = _bilinear(x.values, y.values, heated_decay, along, across)
-    hot = isothermal_decay if heated_decay is None else heated_decay
-    known = np.isfinite(isothermal_decay) & np.isfinite(hot)
+    isothermal_growth = _bilinear(x.values, y.values, isothermal_growth, along, across)
+    if heated_growth is not None:
+        heated_growth = _bilinear(x.values, y.values, heated_growth, along, across)
+    hot = isothermal_growth if heated_growth is None else heated_growth
+    known = np.isfinite(isothermal_growth) & np.isfinite(hot)
     ax.set_facecolor("#bbbbbb")
-    # A region is where the least of its (signed) decay rates is positive: smooth borders.
+    # A region is where the least of its (signed) growth rates is positive: smooth borders.
     signed = (
-        np.minimum(isothermal_decay, hot),
-        np.minimum(isothermal_decay, -hot),
-        np.minimum(-isothermal_decay, -hot),
-        np.minimum(-isothermal_decay, hot),
+        np.minimum(-isothermal_growth, -hot),
+        np.minimum(-isothermal_growth, hot),
+        np.minimum(isothermal_growth, hot),
+        np.minimum(isothermal_growth, -hot),
     )
     shown = []
     for region, level in zip(_REGIONS, signed, strict=True):
@@ -102,7 +102,7 @@ def stability_plane(
             filled.set_edgecolor(region.edge)
             filled.set_linewidth(0.0)
         shown.append(Patch(fc=region.face, hatch=region.hatch, ec="#333333", label=region.label))
-    shown += _borders(ax, along, across, isothermal_decay, heated_decay, border)
+    shown += _borders(ax, along, across, isothermal_growth, heated_growth, border)
     if not known.all():
         shown.append(Patch(fc="#bbbbbb", ec="#333333", label="not computed"))
     if operating_point is not None:
@@ -152,11 +152,11 @@ def _borders(
     ax: Axes, x: Array, y: Array, isothermal: Array, heated: Array | None, name: str
 ) -> list[Line2D]:
     handles = []
-    for model, decay in (("isothermal", isothermal), ("thd", heated)):
-        if decay is None or not (np.nanmin(decay) < 0.0 < np.nanmax(decay)):
+    for model, growth in (("isothermal", isothermal), ("thd", heated)):
+        if growth is None or not (np.nanmin(growth) < 0.0 < np.nanmax(growth)):
             continue
         dashes = model_style(model)["linestyle"]
-        values = np.ma.masked_invalid(decay).T
+        values = np.ma.masked_invalid(growth).T
         ax.contour(x, y, values, [0.0], colors="k", linestyles=[dashes], linewidths=1.3)
         handles.append(Line2D([], [], color="k", ls=dashes, label=f"{name}, {model_label(model)}"))
     return handles

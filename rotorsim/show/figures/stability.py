@@ -43,8 +43,8 @@ class EigenvalueCurve:
 def stability_map(
     speed: Array,
     mass: Array,
-    isothermal_decay: Array,
-    heated_decay: Array | None = None,
+    isothermal_growth: Array,
+    heated_growth: Array | None = None,
     operating_point: tuple[float, float] | None = None,
     title: str = "",
     ax: Axes | None = None,
@@ -57,8 +57,8 @@ def stability_map(
         [rad/s]
     mass : (m,) array
         Per bearing [kg].
-    isothermal_decay, heated_decay : (n, m) arrays
-        Decay rates, positive where stable, NaN where unknown [1/s]. With one of them only, the
+    isothermal_growth, heated_growth : (n, m) arrays
+        Growth rates, positive where unstable, NaN where unknown [1/s]. With one of them only, the
         map knows stable and unstable.
     operating_point : (speed, mass), optional
         Marked by a star [rad/s, kg].
@@ -66,8 +66,8 @@ def stability_map(
     return stability_plane(
         PlaneAxis("shaft speed [rpm]", speed * RPM),
         PlaneAxis("rotor mass per bearing [kg]", mass),
-        isothermal_decay,
-        heated_decay,
+        isothermal_growth,
+        heated_growth,
         None if operating_point is None else (operating_point[0] * RPM, operating_point[1]),
         title,
         ax,

@@ -38,7 +38,7 @@ def tolerance_histograms(
     critical_mass : (n,) array
         At the operating speed [kg], NaN without a threshold.
     importance : mapping of str to float
-        Rank correlations with the decay rate at the operating speed.
+        Rank correlations with the growth rate at the operating speed.
     operating_speed, mass : float
         Marked [rad/s], [kg]; without a mass, a flexible rotor's is not.
     nominal : (threshold speed, critical mass)
@@ -67,7 +67,7 @@ def tolerance_histograms(
         height=0.6,
     )
     bars.axvline(0.0, color="k", linewidth=0.8)
-    bars.set(xlim=(-1.05, 1.05), xlabel="rank correlation with decay rate [-]")
+    bars.set(xlim=(-1.05, 1.05), xlabel="rank correlation with growth rate [-]")
     bars.grid(visible=False, axis="y")
     return figure
 

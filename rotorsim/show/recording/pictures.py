@@ -69,25 +69,25 @@ VERDICT_LABELS = {
 }
 
 
-def classify(isothermal_decay: ArrayLike, heated_decay: ArrayLike) -> NDArray[np.uint8]:
-    """Verdict of each cell from the two models' decay rates.
+def classify(isothermal_growth: ArrayLike, heated_growth: ArrayLike) -> NDArray[np.uint8]:
+    """Verdict of each cell from the two models' growth rates.
 
     Parameters
     ----------
-    isothermal_decay, heated_decay : array_like
-        Positive where the motion decays, negative where it grows, NaN where unknown [1/s].
+    isothermal_growth, heated_growth : array_like
+        Largest real parts: positive where unstable, NaN where unknown [1/s].
 
     Returns
     -------
     array of uint8
         `Verdict` values, the broadcast shape of both.
     """
-    cold, hot = np.broadcast_arrays(np.asarray(isothermal_decay), np.asarray(heated_decay))
+    cold, hot = np.broadcast_arrays(np.asarray(isothermal_growth), np.asarray(heated_growth))
     verdict = np.full(cold.shape, Verdict.UNKNOWN, dtype=np.uint8)
-    verdict[(cold > 0) & (hot > 0)] = Verdict.STABLE
-    verdict[(cold > 0) & (hot <= 0)] = Verdict.HEATING_DESTABILISES
-    verdict[(cold <= 0) & (hot <= 0)] = Verdict.UNSTABLE
-    verdict[(cold <= 0) & (hot > 0)] = Verdict.HEATING_STABILISES
+    verdict[(cold < 0) & (hot < 0)] = Verdict.STABLE
+    verdict[(cold < 0) & (hot >= 0)] = Verdict.HEATING_DESTABILISES
+    verdict[(cold >= 0) & (hot >= 0)] = Verdict.UNSTABLE
+    verdict[(cold >= 0) & (hot < 0)] = Verdict.HEATING_STABILISES
     return verdict
 
 
@@ -106,8 +106,8 @@ class MapPicture:
         See `classify`.
     rotor_mass : float, optional
         Mass of the simulated rotor [kg]: the moving point's height.
-    isothermal_decay, heated_decay : (n, m) arrays, optional
-        Decay rates behind the verdict, positive where stable, NaN where unknown [1/s]. With both
+    isothermal_growth, heated_growth : (n, m) arrays, optional
+        Growth rates behind the verdict, positive where unstable, NaN where unknown [1/s]. With both
         the borders are drawn smooth, between the cells.
     """
 
@@ -116,15 +116,15 @@ class MapPicture:
     mass: Array
     verdict: NDArray[np.uint8]
     rotor_mass: float | None = None
-    isothermal_decay: Array | None = None
-    heated_decay: Array | None = None
+    isothermal_growth: Array | None = None
+    heated_growth: Array | None = None
 
     def verdict_at(self, speed: Array, mass: Array) -> NDArray[np.uint8]:
         """Verdict on a finer grid, (len(speed), len(mass))."""
-        if self.isothermal_decay is None or self.heated_decay is None:
+        if self.isothermal_growth is None or self.heated_growth is None:
             return self.verdict[nearest(self.speed, speed)[:, None], nearest(self.mass, mass)]
-        cold = _bilinear(self.speed, self.mass, self.isothermal_decay, speed, mass)
-        hot = _bilinear(self.speed, self.mass, self.heated_decay, speed, mass)
+        cold = _bilinear(self.speed, self.mass, self.isothermal_growth, speed, mass)
+        hot = _bilinear(self.speed, self.mass, self.heated_growth, speed, mass)
         return classify(cold, hot)
 
 

@@ -107,8 +107,8 @@ def _map(chart: StabilityMap) -> str:
         stability_map(
             plane.speed,
             plane.mass,
-            plane.isothermal_decay,
-            plane.heated_decay,
+            plane.isothermal_growth,
+            plane.heated_growth,
             title=f"c = {number(plane.radial_clearance * 1e6)} µm",
         )
         for plane in map_planes(chart)

@@ -135,7 +135,7 @@ def _not_rigid(found: Results) -> str:
     return html.paragraph(
         "M crit, its whirl ratio and the map over mass are those of a rigid rotor, for comparison: "
         f"they do not hold for the {found.curves[0].rotor} of this scenario. Verdict, threshold, "
-        "decay rate and decrement are the scenario's rotor's."
+        "growth rate and decrement are the scenario's rotor's."
     )
 
 
@@ -162,8 +162,8 @@ def _conventions() -> str:
             " ".join(CONVENTIONS),
             "ε: eccentricity over radial clearance; φ: from the load line to the journal's centre, "
             "with the rotation; S = μ N L D (R/c)²/W, N in revolutions per second.",
-            "Mass margin: 1 − mass over critical mass. Logarithmic decrement: 2π times decay rate "
-            "over damped frequency, of the slowest mode.",
+            "Mass margin: 1 − mass over critical mass. Logarithmic decrement: −2π times growth "
+            "rate over damped frequency, of the slowest mode.",
             "T out: supply temperature plus the heat that the oil carries off over ρ c_p times the "
             "side flow, where warm and supplied oil mix. To walls: part of the heat that leaves "
             "through bush and shaft.",

@@ -119,7 +119,7 @@ def margins(curves: Sequence[StabilityCurve]) -> str:
     top = curves[0].speed[-1] * RPM
     head = ["bearing", "M crit kg", "M c ω²/W", "whirl ratio"]
     if rotor:
-        head += ["verdict", "threshold rpm", "decay 1/s", "log. decrement"]
+        head += ["verdict", "threshold rpm", "growth 1/s", "log. decrement"]
     if mass is not None:
         head.append("mass margin")
     rows = [_margin_row(curve) for curve in curves]
@@ -137,12 +137,12 @@ def _margin_row(curve: StabilityCurve) -> list[str]:
         number(float(curve.critical_mass_dimensionless[-1])),
         number(float(curve.whirl_frequency_ratio[-1]), 3),
     ]
-    if curve.decay_rate is None:
+    if curve.growth_rate is None:
         return row
     row += [
         verdict_at_top(curve),
         thresholds_text(curve),
-        number(float(curve.decay_rate[-1])),
+        number(float(curve.growth_rate[-1])),
         number(log_decrement(curve)),
     ]
     if curve.mass is not None:
