@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from .text import printable
+
 
 class RotorsimError(Exception):
     """Base of everything that rotorsim raises on purpose."""
@@ -40,7 +42,7 @@ class InputError(RotorsimError, ValueError):
         self.source: str | None = None if source is None else str(source)
         self.key = key
         self.value = value
-        where = [part for part in (self.source, key) if part]
+        where = [printable(part) for part in (self.source, key) if part]
         shown = str(value) if isinstance(value, Path) else value
         found = "" if value is None else f" (found: {shown!r})"
         super().__init__(": ".join([*where, message + found]))

@@ -255,14 +255,17 @@ def plain(value: Any) -> Any:
 
 
 def strict_json(value: Any, *, indent: int | None = 2) -> str:
-    """JSON text of `value`; numbers that JSON cannot hold (NaN, infinities) become null.
+    """JSON text of `value`; NaN and infinities become null, dates text.
 
     Examples
     --------
     >>> strict_json({"a": (1.5, float("nan"))}, indent=None)
     '{"a": [1.5, null]}'
     """
-    return json.dumps(_finite(plain(value)), indent=indent, allow_nan=False, ensure_ascii=False)
+    text = json.dumps(
+        _finite(plain(value)), indent=indent, allow_nan=False, ensure_ascii=False, default=str
+    )
+    return text.encode("utf-8", "backslashreplace").decode()  # names of files may not be text
 
 
 def _finite(value: Any) -> Any:

@@ -71,15 +71,15 @@ class Output:
     def note(self, text: str) -> None:
         """Say what goes on, on stderr."""
         if not self.quiet:
-            self.errors.print(text, markup=False, highlight=False)
+            self.errors.print(text)
 
     def warn(self, text: str) -> None:
         """Say what the user should know, on stderr, quiet or not."""
-        self.errors.print(f"warning: {text}", style="yellow", markup=False, highlight=False)
+        self.errors.print(f"warning: {text}", style="yellow")
 
     def complain(self, text: str) -> None:
         """Say what is wrong, on stderr."""
-        self.errors.print(f"error: {text}", style="bold red", markup=False, highlight=False)
+        self.errors.print(f"error: {text}", style="bold red")
 
     @functools.cached_property
     def people(self) -> Console:
@@ -89,14 +89,14 @@ class Output:
         console = Console()
         # Piped output has no width of its own; a table cut at 80 would lose columns.
         width = min(console.width, _TABLE_WIDTH) if console.is_terminal else _TABLE_WIDTH
-        return Console(width=width, highlight=False)
+        return Console(width=width, highlight=False, markup=False)
 
     @functools.cached_property
     def errors(self) -> Console:
         """Console on stderr."""
         from rich.console import Console
 
-        return Console(stderr=True, soft_wrap=True)
+        return Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
 
 
 def guarded(command: Callable[..., int]) -> Callable[..., None]:
@@ -119,7 +119,7 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
             code = _explain(error, output)
         except KeyboardInterrupt:
             kept = "; ".join(output.kept) or "nothing was changed"
-            output.errors.print(f"interrupted: {kept}", markup=False, highlight=False)
+            output.errors.print(f"interrupted: {kept}")
             code = INTERRUPTED
         raise typer.Exit(code)
 

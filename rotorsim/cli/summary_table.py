@@ -6,6 +6,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rich.text import Text
+
 from ..study.wording import RPM, ZERO_CELSIUS, curve_title, number, thresholds_text, verdict_at_top
 from .output import as_typed
 from .stability_tables import orbit_table
@@ -32,7 +34,8 @@ LEAST_WALL_SHARE = 0.005
 def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterator[RenderableType]:
     """What was computed, what converged, headline results, where the files are."""
     counts = ", ".join(f"{count} {status}" for status, count in said["counts"].items())
-    yield f"\n[bold]{said['title']}[/bold]: {sum(said['counts'].values())} film points, {counts}"
+    points = f": {sum(said['counts'].values())} film points, {counts}"
+    yield Text.assemble("\n", (said["title"], "bold"), points)
     if said["heating"]:
         yield heating_table(said["heating"], rigid=not curves or not _flexible(curves[0]))
         lines = "\n".join(walls_lines(said["heating"]))

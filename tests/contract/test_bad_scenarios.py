@@ -154,6 +154,8 @@ BAD = [
     ("axial = 16", "axial = 16.5", "film.mesh.axial", ["16.5", "whole number"]),
     ("axial = 16", "axial = 100000", "film.mesh.axial", ["100000", "4096"]),
     ("circumferential = 64", "circumferential = 4096, bush_radial = 4096", "film.mesh", ["cells"]),
+    ('title = "test"', 'title = "a\\u001b[31m"', "title", ["\\x1b", "one line of text"]),
+    ('title = "test"', 'title = "a\\u0000"', "title", ["\\x00", "control characters"]),
     # the target
     (ECCENTRICITY, "", "operating", ["eccentricity_ratio or load", 'load = "10 kN"']),
     (ECCENTRICITY, ECCENTRICITY + '\nload = "1 kN"', "operating.load", ["1 kN", "not both"]),

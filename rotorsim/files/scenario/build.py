@@ -62,6 +62,17 @@ MAX_CELLS = 20_000_000
 """Cells of the largest film or bush that is accepted."""
 
 
+def title(text: str) -> str:
+    """Title, which must be one line of text."""
+    if not text.isprintable():
+        raise InputError(
+            "must be one line of text without control characters such as tabs, line ends or "
+            "escapes",
+            key="title",
+        )
+    return text
+
+
 def film_settings(table: FilmTable) -> FilmSettings:
     """Film model and mesh."""
     mesh = MeshSize(**table.mesh.model_dump(exclude_none=True))

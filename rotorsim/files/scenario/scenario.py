@@ -18,6 +18,7 @@ from ...errors import InputError, ScenarioError
 from ...model import Bearing, Case, FilmSettings, Lubricant, Target, ThermalModel, ThermalSettings
 from ...model.rotor import Rotor
 from ...shipped import shipped_scenarios
+from ...text import printable
 from . import build
 from .document import parse_toml, read_text
 from .messages import as_written, dotted, location, scenario_error, shown
@@ -228,7 +229,8 @@ def _parts(tables: ScenarioTables, text: str, path: Path | None) -> dict[str, An
     clearances = tuple(bearing.radial_clearance for bearing in bearings)
     speeds = build.speeds(tables.operating)
     return {
-        "title": tables.title or ("untitled" if path is None else path.stem),
+        "title": build.title(tables.title)
+        or ("untitled" if path is None else printable(path.stem)),
         "sha256": hashlib.sha256(text.encode()).hexdigest(),
         "bearing": bearings[0],
         "radial_clearances": clearances,

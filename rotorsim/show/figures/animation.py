@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ...atomic import replacing
 from ...errors import InputError
+from ...text import caption
 from .motion import draw_contact
 from .style import MICRO, RPM, SETTINGS, model_style, new_axes
 
@@ -198,8 +199,8 @@ class _Scene:
         ax.set(xlabel="x (along the load) [µm]", ylabel="y [µm]")
         self.words = ax.set_title("turn")
         ax.text(
-            0.02, 0.98, f"{self.orbit.title}\nc = {clearance:.4g} µm", transform=ax.transAxes,
-            va="top", fontsize=8,
+            0.02, 0.98, f"{caption(self.orbit.title)}\nc = {clearance:.4g} µm",
+            transform=ax.transAxes, va="top", fontsize=8,
         )  # fmt: skip
         ax.plot([], [], color="#009E73", label="film force")
         ax.legend(loc="lower right")

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from numpy.typing import NDArray
 
+from ...text import caption
 from .style import (
     MICRO,
     RPM,
@@ -122,7 +123,7 @@ def spectrum_cascade(
     right = hertz[:, -1].max()
     ax.set_xlim(0.0, min(right, 2.0 * rpm[-1] / 60.0))
     reach = f"highest peak {largest * MICRO:.3g} µm"
-    ax.set(xlabel="frequency [Hz]", ylabel="shaft speed [rpm]", title=title or reach)
+    ax.set(xlabel="frequency [Hz]", ylabel="shaft speed [rpm]", title=caption(title) or reach)
     ax.grid(visible=False)
     return figure_of(ax)
 
@@ -163,7 +164,7 @@ def _whole(ax: Axes, orbit: OrbitPicture, steady_only: bool) -> None:
     ax.set_aspect("equal", adjustable="box")
     ax.set_xlim(-reach, reach)
     ax.set_ylim(-reach, reach)
-    ax.set_title(f"{orbit.title}\nclearance c = {clearance:.4g} µm")
+    ax.set_title(f"{caption(orbit.title)}\nclearance c = {clearance:.4g} µm")
 
 
 def draw_contact(ax: Axes, boundary: Array | None, radial_clearance: float) -> float:

@@ -12,6 +12,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...text import caption
 from .style import axes_or_new, figure_of, model_label, model_style
 
 Array = NDArray[np.float64]
@@ -110,7 +111,7 @@ def stability_plane(
         shown.append(
             Line2D([], [], ls="", marker="*", color="k", mfc="w", ms=11, label="operating point")
         )
-    ax.set(xlabel=x.label, ylabel=y.label, title=title)
+    ax.set(xlabel=x.label, ylabel=y.label, title=caption(title))
     ax.grid(visible=False)
     figure = figure_of(ax)
     if len(figure.axes) == 1:

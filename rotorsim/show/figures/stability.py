@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ...text import caption
 from .regions import PlaneAxis, stability_plane
 from .style import MARKERS, RPM, axes_or_new, figure_of, model_label, model_style
 
@@ -108,7 +109,7 @@ def eigenvalue_plot(
     ax.set(
         xlabel="real part: growth rate [1/s]",
         ylabel="imaginary part: damped frequency [rad/s]",
-        title=title or "eigenvalues over speed",
+        title=caption(title) or "eigenvalues over speed",
     )
     figure = figure_of(ax)
     if len(figure.axes) == 1:
@@ -155,7 +156,7 @@ def campbell_diagram(
         ax.plot([], [], "x", color="k", ms=8, mew=2, ls="", label="threshold")
     if grows:
         ax.plot([], [], color="0.4", linewidth=4.5, alpha=0.45, label="grows (unstable)")
-    ax.set(xlabel="shaft speed [rpm]", ylabel="damped frequency [Hz]", title=title)
+    ax.set(xlabel="shaft speed [rpm]", ylabel="damped frequency [Hz]", title=caption(title))
     ax.set_ylim(bottom=0.0)
     ax.legend(loc="upper left")
     return figure_of(ax)
@@ -251,7 +252,7 @@ def root_locus(
     ax.set(
         xlabel="real part: growth rate [1/s]",
         ylabel="imaginary part: damped frequency [rad/s]",
-        title=f"{title}\n{quantity} from {first} (open) to {last} (filled)".strip(),
+        title=f"{caption(title)}\n{quantity} from {first} (open) to {last} (filled)".strip(),
     )
     return figure_of(ax)
 

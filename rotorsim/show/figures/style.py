@@ -14,6 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ...atomic import replacing
+from ...text import caption
 
 RPM = 30.0 / np.pi
 MICRO = 1e6
@@ -73,7 +74,7 @@ def new_figure(width: float, height: float, title: str = "") -> Figure:
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     if title:
-        figure.suptitle(title, fontsize=11)
+        figure.suptitle(caption(title), fontsize=11)
     return figure
 
 

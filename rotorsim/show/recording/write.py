@@ -8,6 +8,7 @@ import rerun as rr
 
 from ...atomic import replacing
 from ...errors import InputError
+from ...text import markdown
 from .contents import RecordingContents
 from .eigenvalue_view import log_eigenvalues
 from .film_view import log_films
@@ -67,7 +68,7 @@ def write_recording(
 
 def log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> None:
     """Write everything to an open stream (a file's, or a running viewer's)."""
-    text = f"# {contents.title}\n\n{contents.summary}{_notes(contents)}"
+    text = f"# {markdown(contents.title)}\n\n{contents.summary}{_notes(contents)}"
     stream.log("summary", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
     for track in contents.orbits:
         log_orbit(stream, track)
