@@ -113,6 +113,10 @@ class OperatingPoint:
         Where the model leaves its range.
     heat_balance : HeatBalance or None
         THD only.
+    heat_imbalance : float or None
+        Heat unaccounted for, relative to the dissipation; THD only.
+    shaft_temperature : float or None
+        Of the journal's surface [K].
     outlet_temperature : float or None
         Mean of the oil that leaves at both ends [K]: supply temperature plus the heat that the oil
         carries off over rho c_p times the side flow. THD with ``inlet = mixing`` only: otherwise
@@ -147,6 +151,8 @@ class OperatingPoint:
     residual: float
     warnings: tuple[str, ...] = ()
     heat_balance: HeatBalance | None = None
+    heat_imbalance: float | None = None
+    shaft_temperature: float | None = None
     outlet_temperature: float | None = None
     fields: FilmFields | None = field(default=None, repr=False)
 

@@ -174,8 +174,8 @@ def operating_point(
         "side_flow": side_flow(problem, state),
         "min_film_thickness": thinnest,
     }  # fmt: skip
-    if status is SolveStatus.CONVERGED and isinstance(case.target, LoadTarget):
-        status, message = _within_pressure(numbers["max_pressure"])
+    if status is SolveStatus.CONVERGED:
+        status, message = _within_pressure(numbers["max_pressure"], case)
     finite = (
         all(math.isfinite(v) for k, v in numbers.items() if k != "sommerfeld_number")
         and np.isfinite(stiffness).all()
@@ -210,19 +210,23 @@ def operating_point(
             mean_viscosity=mean_viscosity, heat_balance=heat,
         ),
         heat_balance=heat,
+        heat_imbalance=None if heat is None else heat.imbalance,
+        shaft_temperature=_shaft_temperature(solution),
         outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat),
         fields=_fields(solution, fraction) if keep_fields else None,
     )  # fmt: skip
 
 
-def _within_pressure(max_pressure: float) -> tuple[SolveStatus, str]:
+def _within_pressure(max_pressure: float, case: Case) -> tuple[SolveStatus, str]:
     """Whether a rigid bearing and an oil of constant viscosity mean anything at this pressure."""
     if max_pressure <= PRESSURE_LIMIT:
         return SolveStatus.CONVERGED, ""
+    advice = "reduce the eccentricity ratio, the speed or the viscosity"
+    if isinstance(case.target, LoadTarget):
+        advice = "reduce the load, or raise speed, viscosity or size"
     return SolveStatus.OUT_OF_RANGE, (
-        f"the load is carried only at {max_pressure / 1e6:.0f} MPa, above "
-        f"{PRESSURE_LIMIT / 1e6:.0f} MPa: bearing and shaft would yield, and the oil thicken; "
-        "reduce the load, or raise speed, viscosity or size"
+        f"the film reaches {max_pressure / 1e6:.0f} MPa, above {PRESSURE_LIMIT / 1e6:.0f} MPa: "
+        f"bearing and shaft would yield, and the oil thicken; {advice}"
     )
 
 
@@ -264,6 +268,13 @@ def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float
     return float(temperature[film].max()), mean
 
 
+def _shaft_temperature(solution: FilmSolution) -> float:
+    """Temperature of the journal's surface [K]; an isothermal film has the supply's throughout."""
+    if solution.thermal is None:
+        return solution.problem.thermal.supply_temperature
+    return solution.thermal.heat.shaft
+
+
 def _outlet_temperature(case: Case, flow: float, heat: HeatBalance | None) -> float | None:
     """Mean temperature of the oil that leaves at both ends [K]; None where it is not known.
 
@@ -282,6 +293,14 @@ def _outlet_temperature(case: Case, flow: float, heat: HeatBalance | None) -> fl
     return thermal.supply_temperature + heat.enthalpy_out / (oil.density * oil.specific_heat * flow)
 
 
+def _without_tension(solution: FilmSolution) -> Array:
+    """Pressure [Pa] without what a few cells, kept full at the end, hold below ambient."""
+    pressure = solution.state.solution.pressure
+    if solution.problem.settings.cavitation is Cavitation.FULL_SOMMERFELD:
+        return pressure
+    return np.where(solution.state.operator.fixed, pressure, np.maximum(pressure, 0.0))
+
+
 def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
     """Fields over the whole length, angles in the load frame."""
     problem, state, thermal = solution.problem, solution.state, solution.thermal
@@ -291,7 +310,7 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
     if thermal is None:
         temperature = np.full(shape, supply)
         viscosity = np.full(shape, float(problem.lubricant.viscosity(supply)))
-        bush, shaft = np.full(mesh.shape, supply), supply
+        bush = np.full(mesh.shape, supply)
     else:
         temperature = with_groove_oil(problem, thermal.heat.temperature, thermal.inlet_temperature)
         viscosity = np.where(
@@ -299,7 +318,7 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
             problem.lubricant.viscosity(temperature),
             thermal.viscosity,
         )
-        bush, shaft = thermal.heat.bush, thermal.heat.shaft
+        bush = thermal.heat.bush
 
     whole = mesh.whole
     return FilmFields(
@@ -307,12 +326,12 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
         y=mesh.whole_y,
         z=(np.arange(layers) + 0.5) / layers,
         film_thickness=whole(state.center_thickness),
-        pressure=whole(state.solution.pressure),
+        pressure=whole(_without_tension(solution)),
         liquid_fraction=whole(fraction),
         temperature=whole(temperature),
         viscosity=whole(viscosity),
         bush_temperature=whole(bush),
-        shaft_temperature=shaft,
+        shaft_temperature=_shaft_temperature(solution),
     )
 
 

@@ -104,7 +104,8 @@ def _rows(point: OperatingPoint) -> list[tuple[str, str, str]]:
         ("maximum pressure", number(point.max_pressure / 1e6), "MPa"),
         ("maximum temperature", number(point.max_temperature - ZERO_CELSIUS), "degC"),
         ("mean temperature", number(point.mean_temperature - ZERO_CELSIUS), "degC"),
-        *_outlet(point),
+        *_temperature("shaft temperature", point.shaft_temperature),
+        *_temperature("oil outlet temperature", point.outlet_temperature),
         ("friction force", number(point.friction_force), "N"),
         ("power loss", number(point.power_loss / 1e3), "kW"),
         ("side flow", number(point.side_flow * 6e4), "L/min"),
@@ -113,14 +114,11 @@ def _rows(point: OperatingPoint) -> list[tuple[str, str, str]]:
         ("iterations", str(point.iterations), ""),
         ("residual", number(point.residual, 2), ""),
     ]
-    if point.heat_balance is not None:
+    if point.heat_imbalance is not None:
         rows.append(("heat through the walls", wall_share_text(point), "%"))
-        rows.append(("energy imbalance", number(100.0 * point.heat_balance.imbalance, 2), "%"))
+        rows.append(("heat imbalance", number(100.0 * point.heat_imbalance, 2), "%"))
     return rows
 
 
-def _outlet(point: OperatingPoint) -> list[tuple[str, str, str]]:
-    value = point.outlet_temperature
-    return (
-        [] if value is None else [("oil outlet temperature", number(value - ZERO_CELSIUS), "degC")]
-    )
+def _temperature(label: str, value: float | None) -> list[tuple[str, str, str]]:
+    return [] if value is None else [(label, number(value - ZERO_CELSIUS), "degC")]

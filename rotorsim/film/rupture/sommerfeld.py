@@ -50,9 +50,13 @@ class HalfSommerfeld(ConnectedFilm):
         film = ~operator.fixed
         factor = factor_operator(operator, film)
         raw = with_fixed(operator, factor.solve(source_term(operator, squeeze)))
-        full = film & (raw > 0.0) if frozen is None else frozen
+        positive = film & (raw > 0.0)
+        full = positive if frozen is None else frozen
         kept = np.where(full | operator.fixed, raw, 0.0)
-        return operator, PressureSolution(kept, raw, full, factor, 1, True)
+        violations = int(np.sum(full != positive))
+        return operator, PressureSolution(
+            kept, raw, full, factor, 1, True, violations=violations
+        )
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor `operator` on all cells: the unruptured film is perturbed."""
