@@ -344,12 +344,12 @@ def _balance(problem: FilmProblem, walls: Walls, heat: Heat, step: _Step) -> Hea
 
 
 def _unsettled(residual: float, tolerance: float, off: float, force_tolerance: float) -> str:
-    """Say which of temperature and force has not settled; empty if both have."""
-    if not residual < tolerance:
-        return f"the temperatures still change (log viscosity by {residual:.1e} an iteration)"
-    if not off < force_tolerance:
-        return f"the force is off by {off:.1e} of the load"
-    return ""
+    """Say which of temperature and force is farther from settled; empty if both have."""
+    if residual < tolerance and off < force_tolerance:
+        return ""
+    if residual / tolerance < off / force_tolerance:
+        return f"the force is off by {off:.1e}, relative to the load"
+    return f"the temperatures still change (log viscosity by {residual:.1e} an iteration)"
 
 
 def _unbalanced(balance: HeatBalance) -> str:

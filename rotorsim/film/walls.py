@@ -190,8 +190,8 @@ class ConductingBush(Wall):
         return self.ambient + self.operator.robin_rise(reference, conductance)
 
     def exchange(self, contact: FilmContact, /) -> Array:
-        """Return 2 k A/h of every cell."""
-        return 2.0 * contact.bulk
+        """Return a developing film's few times k A/h of every cell, as for the shaft."""
+        return 4.0 * contact.bulk
 
 
 @dataclass(frozen=True)
