@@ -54,9 +54,7 @@ class HalfSommerfeld(ConnectedFilm):
         full = positive if frozen is None else frozen
         kept = np.where(full | operator.fixed, raw, 0.0)
         violations = int(np.sum(full != positive))
-        return operator, PressureSolution(
-            kept, raw, full, factor, 1, True, violations=violations
-        )
+        return operator, PressureSolution(kept, raw, full, factor, 1, True, violations=violations)
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor `operator` on all cells: the unruptured film is perturbed."""
