@@ -6,6 +6,10 @@ matrix of the film, on its full cells, with its factor. The rupture boundary add
 order, since the pressure and its gradient vanish there. K_ij = -dQ_i/dq_j and C_ij = -dQ_i/dq_j-dot
 are therefore the exact derivatives of the discrete forces.
 
+A mass-conserving film stores oil in its ruptured sector: a motion exp(s t) changes the liquid
+fraction that the Couette flow carries on to where the film forms again, and this takes about a
+turn. Its forces are no longer K q + C q-dot; `DynamicStiffness` gives them for any s.
+
 The viscosity stays where it is while the journal moves: oil and walls need far longer than a turn
 to change their temperature. The other limit, a displacement so slow that the film is always in
 thermal equilibrium, is what static load tests measure (`following_stiffness`).
@@ -14,6 +18,7 @@ thermal equilibrium, is what static load tests measure (`following_stiffness`).
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +28,7 @@ from .geometry import CENTER
 from .kernels import kernel
 from .operator import neighbour
 from .problem import FilmState
+from .rupture import Factor
 from .thd import ThermalFilm, solve_thermal_film
 
 Array = NDArray[np.float64]
@@ -34,14 +40,44 @@ STEP_TOLERANCE = 1e-9
 
 
 def linearize(state: FilmState) -> tuple[Array, Array]:
-    """Return K [N/m] and C [N s/m] over the film's displacements, (q, q) each, film frame."""
+    """Return K [N/m] and C [N s/m] over the film's displacements, (q, q) each, film frame.
+
+    The liquid fraction of a mass-conserving film takes its steady value at once; with the oil that
+    it stores see `DynamicStiffness`.
+    """
+    stiffness, damping = np.split(_reaction(state, _motion_sources(state)), 2, axis=1)
+    return stiffness.copy(), damping.copy()
+
+
+class DynamicStiffness:
+    """Forces of the film of a motion q exp(s t), stored oil included: Q = -A(s) q.
+
+    Parameters
+    ----------
+    state : FilmState
+        At rest.
+    """
+
+    def __init__(self, state: FilmState) -> None:
+        self._state = state
+        self._sources = _motion_sources(state)
+        self._volume = state.center_thickness * state.operator.area
+
+    def __call__(self, s: complex) -> NDArray[np.complex128]:
+        """Return A(s) [N/m], (q, q), film frame."""
+        rupture, solution = self._state.problem.rupture, self._state.solution
+        factor = rupture.dynamic_factor(solution, s * self._volume)
+        moved, moving = np.split(_reaction(self._state, self._sources, factor), 2, axis=1)
+        return moved + s * moving
+
+
+def _motion_sources(state: FilmState) -> Array:
+    """What unit displacements, then unit velocities, add to each cell's continuity, (2q, n, m)."""
     shapes = state.problem.geometry.displacements.shapes
     squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
     right = np.concatenate([displacement_sources(state, shapes), -shapes[:, CENTER] * squeezed])
     right[:, state.operator.fixed] = 0.0
-    reaction = _reaction(state, right)
-    count = len(shapes)
-    return reaction[:, :count].copy(), reaction[:, count:].copy()
+    return right
 
 
 def stiffness_matrix(state: FilmState) -> Array:
@@ -50,10 +86,11 @@ def stiffness_matrix(state: FilmState) -> Array:
     return _reaction(state, displacement_sources(state, shapes))
 
 
-def _reaction(state: FilmState, right: Array) -> Array:
+def _reaction(state: FilmState, right: Array, factor: Factor | None = None) -> NDArray[Any]:
     """-dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
     geometry, solution = state.problem.geometry, state.solution
-    perturbed = np.where(solution.full, solution.factor.solve(right), 0.0) * state.operator.area
+    factor = factor or solution.factor
+    perturbed = np.where(solution.full, factor.solve(right), 0.0) * state.operator.area
     shapes = geometry.displacements.shapes[:, CENTER].reshape(-1, perturbed[0].size)
     return -geometry.multiplicity * shapes @ perturbed.reshape(len(right), -1).T
 

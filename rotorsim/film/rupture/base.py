@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ Flags = NDArray[np.bool_]
 class Factor(Protocol):
     """A factored film matrix."""
 
-    def solve(self, right: Array) -> Array:
+    def solve(self, right: Array) -> NDArray[Any]:
         """Solve for (..., n, m) right-hand sides [m3/s]."""
         ...
 
@@ -101,6 +101,21 @@ class RuptureCondition(Protocol):
         """Return the area of each cell in which oil is squeezed when the film thins [m2]."""
         ...
 
+    def dynamic_factor(
+        self, solution: PressureSolution, rate: NDArray[np.complex128]
+    ) -> Factor:
+        """Return the factor of the film that moves as exp(s t).
+
+        Parameters
+        ----------
+        solution : PressureSolution
+            Of the film at rest.
+        rate : (n, m) complex array
+            s times the volume of each cell [m3/s]; ruptured cells whose content may change store
+            as much for each unit of liquid fraction.
+        """
+        ...
+
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor `operator`, a variant of the solution's own, on the solution's full cells."""
         ...
@@ -116,6 +131,13 @@ class ConnectedFilm:
         """Return the whole area of each cell [m2]."""
         del solution
         return operator.area
+
+    def dynamic_factor(
+        self, solution: PressureSolution, rate: NDArray[np.complex128]
+    ) -> Factor:
+        """Return the factor of the film at rest: nothing is stored."""
+        del rate
+        return solution.factor
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor `operator` on the solution's full cells."""

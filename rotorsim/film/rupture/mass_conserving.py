@@ -9,7 +9,8 @@ liquid fractions.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,32 +27,72 @@ Flags = NDArray[np.bool_]
 
 MAX_STEPS = 200
 
-_factorise, _triangular = get_lapack_funcs(("gbtrf", "gbtrs"), dtype=np.float64)
+_BAND_SOLVERS = {kind: get_lapack_funcs(("gbtrf", "gbtrs"), dtype=kind) for kind in (float, complex)}
 
 
 @dataclass(frozen=True)
-class JfoFactor:
+class MixedFactor:
     """LU factors of the mixed system; `solve` gives pressures in full cells [Pa].
 
     In ruptured cells the solution is the liquid fraction (or its perturbation).
+
+    Parameters
+    ----------
+    matrix : array
+        Band matrix as LAPACK's gbtrf takes it, real or complex.
+    width : int
+        Of the band on each side.
+    order : (n,) int array
+        Columns of cells in the order of the band.
+    scale : float
+        Pressure per unit of the unknown in full cells [Pa].
+    full, film : (n, m) bool arrays
+        Full cells; cells outside the grooves.
     """
 
-    band: Array
-    pivots: NDArray[np.int32]
+    matrix: NDArray[Any]
     width: int
     order: NDArray[np.int64]
     scale: float
     full: Flags
+    film: Flags
+    _factors: tuple[Any, Any] = field(init=False, repr=False, compare=False)
 
-    def solve(self, right: Array) -> Array:
+    def __post_init__(self) -> None:
+        factorise, _ = self._solvers
+        band, pivots, info = factorise(self.matrix, self.width, self.width)
+        if info != 0:
+            raise SingularFilmError(f"the ruptured film's matrix is singular (pivot {info})")
+        object.__setattr__(self, "_factors", (band, pivots))
+
+    @property
+    def _solvers(self):
+        return _BAND_SOLVERS[complex if np.iscomplexobj(self.matrix) else float]
+
+    def with_stored_oil(self, rate: NDArray[np.complex128]) -> MixedFactor:
+        """Factor the system of a motion exp(s t), in which the ruptured cells store oil.
+
+        Parameters
+        ----------
+        rate : (n, m) complex array
+            s times the volume of each cell [m3/s].
+        """
+        matrix = self.matrix.astype(complex)
+        stored = np.where(self.film & ~self.full, rate, 0.0)
+        matrix[2 * self.width] += stored[self.order].ravel()
+        return replace(self, matrix=matrix)
+
+    def solve(self, right: Array) -> NDArray[Any]:
         """Solve for (..., n, m) right-hand sides [m3/s]."""
         n, m = self.full.shape
         flat = np.asarray(right, dtype=float).reshape(-1, n, m)
         packed = flat[:, self.order, :].reshape(flat.shape[0], -1).T
-        solved, info = _triangular(self.band, self.width, self.width, packed, self.pivots)
+        _, triangular = self._solvers
+        band, pivots = self._factors
+        solved, info = triangular(band, self.width, self.width, packed, pivots)
         if info != 0:
             raise SingularFilmError(f"band solve failed ({info})")
-        result = np.zeros_like(flat)
+        result = np.zeros(flat.shape, dtype=solved.dtype)
         result[:, self.order, :] = solved.T.reshape(flat.shape[0], -1, m)
         result = np.where(self.full, result * self.scale, result)
         return result.reshape(np.shape(right))
@@ -80,6 +121,13 @@ class MassConserving:
         """Return the area that oil fills [m2]: where the film is ruptured, only a part."""
         assert solution.liquid is not None
         return solution.liquid * operator.area
+
+    def dynamic_factor(
+        self, solution: PressureSolution, rate: NDArray[np.complex128]
+    ) -> Factor:
+        """Return the factor with the oil that the ruptured cells store and give back."""
+        assert isinstance(solution.factor, MixedFactor)
+        return solution.factor.with_stored_oil(rate)
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor the mixed system of `operator` in the state of `solution`."""
@@ -164,7 +212,7 @@ def _worst_changes(full: Flags, update: Flags, unknown: Array) -> Flags:
     return np.where(chosen, update, full)
 
 
-def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[JfoFactor, Array]:
+def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[MixedFactor, Array]:
     everything = np.ones_like(full)
     order, folded = column_order(operator.interior, everything)
     m = full.shape[1]
@@ -179,10 +227,7 @@ def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[Jfo
         operator.conductance, operator.interior, operator.fixed_pressure, operator.couette,
         operator.fixed, full, rate * operator.area, order, position, width, scale, band, right,
     )  # fmt: skip
-    band, pivots, info = _factorise(band, width, width, overwrite_ab=1)
-    if info != 0:
-        raise SingularFilmError(f"the ruptured film's matrix is singular (pivot {info})")
-    return JfoFactor(band, pivots, width, order, scale, full), right
+    return MixedFactor(band, width, order, scale, full, ~operator.fixed), right
 
 
 @kernel
