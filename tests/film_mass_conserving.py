@@ -136,6 +136,34 @@ class MassConservingFilm:
         p = self.solve(x, y, **step).sum(axis=1) * self.weights
         return -np.array([p @ np.cos(self.theta), p @ np.sin(self.theta)])
 
+    def dynamic_stiffness(self, x, y, frequency):
+        """-dF/dq of a motion exp(i nu T) about the film last solved at (x, y), (2, 2) complex.
+
+        `frequency`: nu over the shaft's. The discrete equations by differences of the matrices.
+        """
+        pressure, void, area = self.pressure.ravel(), self.void.ravel(), self.dt * self.dy
+        free, full = np.flatnonzero(~self.groove.ravel()), self.pressure.ravel() > self.void.ravel()
+        sources = []
+        for direction in np.eye(2) * 1e-6:
+            ahead, behind = (
+                self._matrices(x + direction[0], y + direction[1]),
+                self._matrices(x - direction[0], y - direction[1]),
+            )
+            flow = (ahead[0] - behind[0]) @ pressure + (ahead[1] - behind[1]) @ (1.0 - void)
+            thinner = self.thickness(self.theta, *(direction * 1e6)) - 1.0
+            stored = 2j * frequency * area * (1.0 - void) * np.repeat(thinner, self.along)
+            sources.append(flow / 2e-6 - stored)
+        poiseuille, couette = self._matrices(x, y)
+        h = np.repeat(self.thickness(self.theta, x, y), self.along)
+        content = sp.diags(2j * frequency * area * h) - couette  # per void fraction
+        matrix = poiseuille @ sp.diags(full * 1.0) + content @ sp.diags(~full * 1.0)
+        unknown = np.zeros((full.size, 2), dtype=complex)
+        inner = sp.csc_array(sp.csr_array(matrix)[free][:, free])
+        unknown[free] = splu(inner).solve(-np.array(sources).T[free])
+        change = np.where(full[:, None], unknown, 0.0).reshape(*self.groove.shape, 2).sum(axis=1)
+        normals = np.stack([np.cos(self.theta), np.sin(self.theta)])
+        return self.weights * normals @ change
+
     def equilibrium(self, load, *, angles, eccentricities=(0.05, 0.99)):
         """Eccentricity ratio and attitude that carry `load` along x, by nested bisection.
 

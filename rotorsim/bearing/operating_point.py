@@ -65,6 +65,23 @@ class FilmFields:
 
 
 @dataclass(frozen=True)
+class FrequencyCoefficients:
+    """Stiffness and damping over the whirl frequency, load frame.
+
+    Attributes
+    ----------
+    frequency_ratio : (n,) array
+        Whirl frequency over shaft frequency, ascending.
+    stiffness, damping : (n, 2, 2) arrays
+        [N/m], [N s/m]
+    """
+
+    frequency_ratio: Array
+    stiffness: Array
+    damping: Array
+
+
+@dataclass(frozen=True)
 class OperatingPoint:
     """Static results, coefficients and the rigid rotor's verdict at one speed (SI, load frame).
 
@@ -100,6 +117,12 @@ class OperatingPoint:
         [m]
     stiffness, damping : (2, 2) arrays
         K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F on the journal, load frame.
+    coefficient_frequency_ratio : float or None
+        Whirl frequency over shaft frequency at which they hold; None: at any. Oil stored in a
+        mass-conserving film makes them depend on it: they are given at the threshold's whirl
+        frequency, and at half the shaft's where there is no threshold.
+    frequency_coefficients : FrequencyCoefficients or None
+        Stiffness and damping at the ratios of ``film.frequency_ratio``.
     critical_mass : float or None
         Per bearing [kg].
     critical_mass_dimensionless : float or None
@@ -154,6 +177,8 @@ class OperatingPoint:
     heat_imbalance: float | None = None
     shaft_temperature: float | None = None
     outlet_temperature: float | None = None
+    coefficient_frequency_ratio: float | None = None
+    frequency_coefficients: FrequencyCoefficients | None = None
     fields: FilmFields | None = field(default=None, repr=False)
 
     @property
@@ -181,7 +206,7 @@ def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
         if entry.name == "fields":
             continue
         value = getattr(point, entry.name)
-        if entry.name == "heat_balance" and value is not None:
+        if entry.name in ("heat_balance", "frequency_coefficients") and value is not None:
             value = dataclasses.asdict(value)
         record[entry.name] = plain(value)
     return record
@@ -205,6 +230,11 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
     values["warnings"] = tuple(values["warnings"])
     if values["heat_balance"] is not None:
         values["heat_balance"] = HeatBalance(**values["heat_balance"])
+    if values.get("frequency_coefficients") is not None:
+        arrays = values["frequency_coefficients"].items()
+        values["frequency_coefficients"] = FrequencyCoefficients(
+            **{name: np.array(value, dtype=float) for name, value in arrays}
+        )
     return OperatingPoint(**values)
 
 

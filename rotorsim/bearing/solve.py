@@ -14,12 +14,13 @@ from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import film_flow
 from ..film.heat import HeatBalance, with_groove_oil
-from ..film.linearization import following_stiffness, linearize
+from ..film.linearization import following_stiffness
 from ..film.losses import friction_force, peak, side_flow
 from ..film.solution import FilmSolution, WarmStart, solve_film
 from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
 from ..status import SolveStatus
 from .checks import regime_warnings
+from .dynamics import film_dynamics, frequency_coefficients, stored_oil_warnings
 from .operating_point import FilmFields, OperatingPoint, failed_point
 from .whirl import rigid_threshold
 
@@ -142,14 +143,15 @@ def operating_point(
 ) -> OperatingPoint:
     """Results of a solved film, turned into the load frame."""
     problem, state = solution.problem, solution.state
-    stiffness, damping = linearize(state)
     status, message = solution.status, solution.message
+    following = None
     if solution.thermal is not None and case.film.viscosity_response is FOLLOWING:
-        stiffness, settled = following_stiffness(solution.thermal)
+        following, settled = following_stiffness(solution.thermal)
         if not settled and status is SolveStatus.CONVERGED:
             status, message = SolveStatus.NOT_CONVERGED, "a displaced film did not converge"
     turn = _rotation(solution.frame)
-    stiffness, damping = turn @ stiffness @ turn.T, turn @ damping @ turn.T
+    dynamics = film_dynamics(solution, turn, following=following)
+    stiffness, damping, frequency_ratio = dynamics.stated_coefficients()
     center = turn @ state.displacement
     load = float(np.hypot(*state.force))
     clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
@@ -199,15 +201,20 @@ def operating_point(
         **numbers,
         stiffness=stiffness,
         damping=damping,
+        coefficient_frequency_ratio=frequency_ratio,
+        frequency_coefficients=frequency_coefficients(dynamics, case.film.frequency_ratios),
         critical_mass=threshold.critical_mass if threshold else None,
         critical_mass_dimensionless=threshold.critical_mass_dimensionless if threshold else None,
         whirl_frequency_ratio=threshold.whirl_frequency_ratio if threshold else None,
         stability=threshold.stability if threshold else None,
         iterations=solution.iterations,
         residual=solution.residual,
-        warnings=regime_warnings(
-            case, speed, min_film_thickness=thinnest, max_temperature=hottest,
-            mean_viscosity=mean_viscosity, heat_balance=heat,
+        warnings=(
+            *regime_warnings(
+                case, speed, min_film_thickness=thinnest, max_temperature=hottest,
+                mean_viscosity=mean_viscosity, heat_balance=heat,
+            ),
+            *stored_oil_warnings(dynamics, stiffness, damping, frequency_ratio),
         ),
         heat_balance=heat,
         heat_imbalance=None if heat is None else heat.imbalance,

@@ -26,6 +26,9 @@ COEFFICIENTS = ("kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")
 
 DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
 
+FREQUENCY = "frequency_ratio"
+"""Dimension of the variables ``kxx_of_frequency`` ... ``cyy_of_frequency``, where they are given."""
+
 SIGNS = (
     "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",
     "first index: direction of the force, second: direction of the displacement or velocity.",
@@ -51,6 +54,21 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
         for i in "xy"
         for j in "xy"
     },
+    FREQUENCY: ("1", "whirl frequency over shaft frequency"),
+    **{
+        f"k{i}{j}_of_frequency": ("N m-1", f"stiffness -dF{i}/d{j} over the whirl frequency")
+        for i in "xy"
+        for j in "xy"
+    },
+    **{
+        f"c{i}{j}_of_frequency": ("N s m-1", f"damping -dF{i}/dv{j} over the whirl frequency")
+        for i in "xy"
+        for j in "xy"
+    },
+    "coefficient_frequency_ratio": (
+        "1",
+        "whirl frequency over shaft frequency at which kxx ... cyy hold; NaN: at any",
+    ),
     "eccentricity_ratio": ("1", "eccentricity over radial clearance"),
     "attitude_angle": ("rad", "angle from the load line to the journal centre, with rotation"),
     "load": ("N", "magnitude of the static load"),
@@ -91,6 +109,7 @@ SCALARS = (
     "critical_mass",
     "critical_mass_dimensionless",
     "whirl_frequency_ratio",
+    "coefficient_frequency_ratio",
     "residual",
 )
 
@@ -126,8 +145,38 @@ def from_points(points: Sequence[OperatingPoint], attributes: dict[str, Any]) ->
     ordered = [row[index] for index in np.ndindex(shape)]
     columns = _columns(ordered)
     variables = {name: values.reshape(shape) for name, values in columns.items()}
-    return build(
+    dataset = build(
         dict(zip(DIMENSIONS, (models, clearances, speeds), strict=True)), variables, attributes
+    )
+    return _with_frequency(dataset, ordered, shape)
+
+
+def _with_frequency(
+    dataset: xr.Dataset, points: Sequence[OperatingPoint], shape: tuple[int, ...]
+) -> xr.Dataset:
+    """Add K and C over the whirl frequency, where points hold them; NaN where one does not."""
+    given = [p.frequency_coefficients for p in points]
+    first = next((one for one in given if one is not None), None)
+    if first is None:
+        return dataset
+    ratios = first.frequency_ratio
+    gap = np.full((ratios.size, 8), np.nan)
+    values = np.array(
+        [
+            gap
+            if one is None
+            else np.hstack([one.stiffness.reshape(-1, 4), one.damping.reshape(-1, 4)])
+            for one in given
+        ]
+    )
+    values = np.moveaxis(values.reshape(*shape, ratios.size, 8), -2, -3)
+    dimensions = (*DIMENSIONS[:-1], FREQUENCY, DIMENSIONS[-1])
+    names = [f"{name}_of_frequency" for name in COEFFICIENTS]
+    variables = {
+        name: (dimensions, values[..., i], cf_attributes(name)) for i, name in enumerate(names)
+    }
+    return dataset.assign(variables).assign_coords(
+        {FREQUENCY: (FREQUENCY, ratios, cf_attributes(FREQUENCY))}
     )
 
 

@@ -115,18 +115,32 @@ class MeshSize:
 
 @dataclass(frozen=True)
 class FilmSettings:
-    """Film model and mesh."""
+    """Film model and mesh.
+
+    Parameters
+    ----------
+    cavitation, inception, mesh, ruptured_friction, viscosity_response
+    frequency_ratios : tuple of float
+        Whirl over shaft frequencies, ascending, at which K and C are given besides.
+    """
 
     cavitation: Cavitation = Cavitation.REYNOLDS
     inception: Inception = Inception.MAX_FILM
     mesh: MeshSize = field(default_factory=MeshSize)
     ruptured_friction: RupturedFriction = RupturedFriction.LIQUID
     viscosity_response: ViscosityResponse = ViscosityResponse.FROZEN
+    frequency_ratios: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         _as_choice(self, "film", cavitation=Cavitation, inception=Inception)
         _as_choice(self, "film", ruptured_friction=RupturedFriction)
         _as_choice(self, "film", viscosity_response=ViscosityResponse)
+        ratios = self.frequency_ratios
+        ascend = all(low < high for low, high in zip((0.0, *ratios), ratios, strict=False))
+        if not (ascend and all(math.isfinite(ratio) for ratio in ratios)):
+            raise InputError(
+                "must be above 0 and ascend", key="film.frequency_ratio", value=list(ratios)
+            )
 
 
 @dataclass(frozen=True)

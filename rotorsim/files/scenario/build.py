@@ -87,6 +87,7 @@ def film_settings(table: FilmTable) -> FilmSettings:
         mesh,
         table.ruptured_friction,
         table.viscosity_response,
+        tuple(table.frequency_ratio),
     )
 
 

@@ -141,6 +141,7 @@ class FilmTable(Table):
     viscosity_response: Annotated[ViscosityResponse, choice(ViscosityResponse)] = (
         ViscosityResponse.FROZEN
     )
+    frequency_ratio: Annotated[list[float], one_or_more] = Field(default=[], max_length=64)
 
 
 class ThermalTable(Table):
