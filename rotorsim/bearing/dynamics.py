@@ -183,9 +183,7 @@ def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
     ratio = dynamics.threshold_ratio() or DEFAULT_RATIO
     stiffness, damping = dynamics.coefficients(ratio)
     size = len(stiffness)
-    state = np.block(
-        [[np.zeros((size, size)), np.eye(size)], [-stiffness / mass, -damping / mass]]
-    )
+    state = np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness / mass, -damping / mass]])
 
     def law(s: complex) -> ComplexArray:
         return dynamics(s) + mass * s * s * np.eye(size)

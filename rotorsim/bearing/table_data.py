@@ -27,7 +27,7 @@ COEFFICIENTS = ("kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")
 DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
 
 FREQUENCY = "frequency_ratio"
-"""Dimension of the variables ``kxx_of_frequency`` ... ``cyy_of_frequency``, where they are given."""
+"""Dimension of the variables ``kxx_of_frequency`` ... ``cyy_of_frequency``, where given."""
 
 SIGNS = (
     "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",

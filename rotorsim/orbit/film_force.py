@@ -192,6 +192,10 @@ def loaded_film(
     notes = ["film solved at each step"]
     if solution.thermal is not None:
         notes.append(f"viscosity field of the operating point at {rpm}, frozen")
+    if solution.problem.rupture.conserves_mass:
+        notes.append(
+            "liquid fraction as in a steady state: oil stored in the ruptured film left out"
+        )
     if solution.problem.mesh.slot.any():
         notes.append(f"p = 0 held where the film is thickest at {rpm}")
     return LoadedFilm(SolvedFilmForce.of(case, solution), load, case.bearing, "; ".join(notes))

@@ -150,6 +150,8 @@ BAD = [
         "operating.eccentricity_ratio",
         ["quotes"],
     ),
+    ("[film]", "[film]\nfrequency_ratio = [1.0, 0.5]", "film.frequency_ratio", ["0.5", "ascend"]),
+    ("[film]", "[film]\nfrequency_ratio = 0.0", "film.frequency_ratio", ["0.0", "above 0"]),
     ("axial = 16", "axial = 15", "film.mesh.axial", ["15", "even"]),
     ("axial = 16", "axial = 16.5", "film.mesh.axial", ["16.5", "whole number"]),
     ("axial = 16", "axial = 100000", "film.mesh.axial", ["100000", "4096"]),

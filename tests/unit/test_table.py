@@ -8,7 +8,12 @@ import numpy as np
 import pytest
 
 from rotorsim.bearing.interpolation import Coefficients
-from rotorsim.bearing.operating_point import OperatingPoint
+from rotorsim.bearing.operating_point import (
+    FrequencyCoefficients,
+    OperatingPoint,
+    point_from_dict,
+    point_to_dict,
+)
 from rotorsim.bearing.table import CoefficientTable
 from rotorsim.errors import InputError, OutOfRangeError, TableError
 from rotorsim.status import SolveStatus, Stability
@@ -60,6 +65,30 @@ def test_every_variable_has_units_and_a_name(table):
     for name, variable in table.dataset.variables.items():
         assert variable.attrs["units"], name
         assert variable.attrs["long_name"], name
+
+
+def test_coefficients_over_the_whirl_frequency_are_kept(tmp_path):
+    ratios = np.array([0.5, 1.0])
+    points = [make_point("isothermal", 1e-4, speed) for speed in SPEEDS]
+    scale = np.array([1.0, 1.2])[:, None, None]
+    whole = [
+        replace(
+            p,
+            frequency_coefficients=FrequencyCoefficients(
+                ratios, p.stiffness * scale, p.damping / scale
+            ),
+        )
+        for p in points
+    ]
+    again = [point_from_dict(point_to_dict(point)) for point in whole]
+    CoefficientTable.from_points([again]).save(tmp_path / "t.nc")
+    dataset = CoefficientTable.load(tmp_path / "t.nc").dataset
+    assert np.array_equal(dataset["frequency_ratio"], ratios)
+    found = dataset["kxy_of_frequency"].sel(frequency_ratio=1.0).values.ravel()
+    assert np.allclose(found, [1.2 * p.stiffness[0, 1] for p in points], rtol=1e-12)
+    found = dataset["cyx_of_frequency"].sel(frequency_ratio=1.0).values.ravel()
+    assert np.allclose(found, [p.damping[1, 0] / 1.2 for p in points], rtol=1e-12)
+    assert np.isnan(dataset["coefficient_frequency_ratio"]).all()
 
 
 def test_order_of_points_does_not_matter(table):

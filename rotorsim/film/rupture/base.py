@@ -101,9 +101,7 @@ class RuptureCondition(Protocol):
         """Return the area of each cell in which oil is squeezed when the film thins [m2]."""
         ...
 
-    def dynamic_factor(
-        self, solution: PressureSolution, rate: NDArray[np.complex128]
-    ) -> Factor:
+    def dynamic_factor(self, solution: PressureSolution, rate: NDArray[Any]) -> Factor:
         """Return the factor of the film that moves as exp(s t).
 
         Parameters
@@ -132,9 +130,7 @@ class ConnectedFilm:
         del solution
         return operator.area
 
-    def dynamic_factor(
-        self, solution: PressureSolution, rate: NDArray[np.complex128]
-    ) -> Factor:
+    def dynamic_factor(self, solution: PressureSolution, rate: NDArray[Any]) -> Factor:
         """Return the factor of the film at rest: nothing is stored."""
         del rate
         return solution.factor

@@ -27,7 +27,9 @@ Flags = NDArray[np.bool_]
 
 MAX_STEPS = 200
 
-_BAND_SOLVERS = {kind: get_lapack_funcs(("gbtrf", "gbtrs"), dtype=kind) for kind in (float, complex)}
+_BAND_SOLVERS = {
+    kind: get_lapack_funcs(("gbtrf", "gbtrs"), dtype=kind) for kind in (float, complex)
+}
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ class MixedFactor:
     def _solvers(self):
         return _BAND_SOLVERS[complex if np.iscomplexobj(self.matrix) else float]
 
-    def with_stored_oil(self, rate: NDArray[np.complex128]) -> MixedFactor:
+    def with_stored_oil(self, rate: NDArray[Any]) -> MixedFactor:
         """Factor the system of a motion exp(s t), in which the ruptured cells store oil.
 
         Parameters
@@ -122,9 +124,7 @@ class MassConserving:
         assert solution.liquid is not None
         return solution.liquid * operator.area
 
-    def dynamic_factor(
-        self, solution: PressureSolution, rate: NDArray[np.complex128]
-    ) -> Factor:
+    def dynamic_factor(self, solution: PressureSolution, rate: NDArray[Any]) -> Factor:
         """Return the factor with the oil that the ruptured cells store and give back."""
         assert isinstance(solution.factor, MixedFactor)
         return solution.factor.with_stored_oil(rate)
