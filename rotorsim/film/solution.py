@@ -209,6 +209,8 @@ def graded_eccentricity(eps: float) -> float:
 
 def _load_line(state: FilmState) -> float:
     """Angle from the load line to the film frame's x axis, the load being what the film carries."""
+    if not state.force.any():
+        return 0.0
     return -math.atan2(-state.force[1], -state.force[0])
 
 
