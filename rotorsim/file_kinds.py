@@ -1,4 +1,4 @@
-"""What a file is, by its first bytes and its name, and which command takes it.
+"""What a file is, by its first bytes and its name, which command takes it, and its contents.
 
 Nothing here decides what can be read: the readers do, and ask here only for what to say of a file
 that is not theirs.
@@ -6,9 +6,13 @@ that is not theirs.
 
 from __future__ import annotations
 
+import os
 import re
+import stat
 from enum import StrEnum
 from pathlib import Path
+
+from .errors import InputError
 
 HEAD = 65_536
 """Bytes of a file that are looked at."""
@@ -105,9 +109,56 @@ _SCENARIO_TABLE = re.compile(
 _COEFFICIENT = re.compile(rb"^[ \t]*kxx[ \t]*=", re.M)
 
 
+def read_bytes(path: str | Path, most: int, error: type[InputError] = InputError) -> bytes:
+    """Return the contents of an ordinary file.
+
+    Parameters
+    ----------
+    path : str or Path
+    most : int
+        Size of the largest file that is read [bytes].
+    error : type, optional
+        Of what is raised.
+
+    Raises
+    ------
+    InputError
+        There is no such file, it is a folder, a pipe or a device, is larger than `most`, or cannot
+        be read.
+
+    Notes
+    -----
+    A pipe is refused before it is opened, which could wait for ever.
+    """
+    source = Path(path)
+    try:
+        found = source.stat()
+        if stat.S_ISDIR(found.st_mode):
+            raise error("is a directory; give a file", source=source)
+        if not stat.S_ISREG(found.st_mode):
+            raise error("is no ordinary file; save its contents to one", source=source)
+        if found.st_size > most:
+            raise error(
+                f"is too large: {found.st_size / 1e6:.0f} MB, at most {most / 1e6:.0f} MB are read",
+                source=source,
+            )
+        with source.open("rb") as stream:
+            return stream.read(most)
+    except FileNotFoundError:
+        raise error("no such file", source=source) from None
+    except OSError as problem:
+        raise error(f"cannot be read: {problem.strerror or problem}", source=source) from None
+    except InputError:  # also a ValueError
+        raise
+    except ValueError as problem:  # a name that no file can have
+        raise error(f"cannot be read: {problem}", source=source) from None
+
+
 def kind_of(path: str | Path) -> FileKind | None:
     """Kind of the file at `path`: by its contents, else by its name; None where neither tells."""
     try:
+        if not os.path.isfile(path):  # opening a pipe would wait for who writes to it
+            return None
         with Path(path).open("rb") as file:
             head = file.read(HEAD)
     except (OSError, ValueError):

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+import hashlib
+import io
+import os
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..atomic import replacing
+from ..atomic import write_bytes
 from ..errors import TableError
-from ..file_kinds import FileKind, kind_of, sentence
+from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
 from .table_data import TABLE_VERSION, scenario_digest
 
 if TYPE_CHECKING:
     import xarray as xr
+
+_SEAL = b"\nrotorsim sha256 "
+"""What precedes the checksum of all bytes before it; HDF5 ignores what follows its own end."""
+_SEALED = len(_SEAL) + 64
+"""Bytes at the end of a file that this program wrote."""
+_MAX_BYTES = 500_000_000
+_MAX_LOADED = 500_000_000
+"""Arrays of a file in memory [bytes]; a small file can claim arrays of any size."""
 
 
 def write(dataset: xr.Dataset, path: str | Path) -> Path:
@@ -21,19 +33,26 @@ def write(dataset: xr.Dataset, path: str | Path) -> Path:
     ------
     TableError
         The file cannot be written.
+
+    Notes
+    -----
+    The file is made in memory first: the HDF5 library crashes where a disk is full. Its last bytes
+    are the SHA-256 of all others; every block of numbers has a checksum of HDF5 as well, which
+    stays when another program writes the file anew.
     """
     target = Path(path)
-    # The checksum lets a reader notice a damaged block; it needs chunked storage.
     encoding: dict[str, dict[str, Any]] = {
         str(name): {"fletcher32": True, "chunksizes": variable.shape}
-        for name, variable in dataset.data_vars.items()
-        if variable.dtype.kind in "fi" and variable.size
+        for name, variable in dataset.variables.items()
+        if variable.dtype.kind in "fi" and variable.size and variable.ndim
     }
+    stream = io.BytesIO()
     try:
-        with replacing(target) as temporary:
-            dataset.to_netcdf(temporary, engine="h5netcdf", format="NETCDF4", encoding=encoding)
+        dataset.to_netcdf(stream, engine="h5netcdf", format="NETCDF4", encoding=encoding)
+        data = stream.getvalue()
+        write_bytes(target, data + _SEAL + hashlib.sha256(data).hexdigest().encode())
     except OSError as error:
-        raise TableError(f"cannot be written: {error}", source=target) from error
+        raise TableError(f"cannot be written: {error.strerror or error}", source=target) from error
     return target
 
 
@@ -45,28 +64,60 @@ def read(path: str | Path) -> xr.Dataset:
     TableError
         The file is missing, damaged, not a table, or of a newer format.
     """
-    import xarray as xr
-
     source = Path(path)
-    if not source.is_file():
+    if not os.path.lexists(source):
         raise TableError("no such file; `rotorsim table SCENARIO` makes one", source=source)
-    kind = kind_of(source)
+    data = read_bytes(source, _MAX_BYTES, TableError)
+    kind = recognise(data[:HEAD], source.suffix.lower())
     if kind not in (None, FileKind.NETCDF):
         reader = "; CoefficientTable.from_csv reads one" if kind is FileKind.CSV else ""
         raise TableError(f"{sentence(kind)}{reader}; here a netCDF table is needed", source=source)
+    dataset = _loaded(_unsealed(data, source), source)
+    _check_provenance(dataset, source)
+    for variable in dataset.variables.values():
+        variable.encoding = {}
+    return dataset
+
+
+def _unsealed(data: bytes, source: Path) -> bytes:
+    """Check and cut off the checksum at the end; a file of another program has none."""
+    end = data.rfind(_SEAL, -2 * _SEALED)
+    if end < 0:
+        return data
+    body, stated = data[:end], data[end + len(_SEAL) :]
+    if hashlib.sha256(body).hexdigest().encode() != stated:
+        raise TableError(
+            "its contents do not match its SHA-256: it is damaged, or was changed after it was "
+            "written; make it again with `rotorsim table`",
+            source=source,
+        )
+    return body
+
+
+def _loaded(data: bytes, source: Path) -> xr.Dataset:
+    import xarray as xr
+
     try:
-        with xr.open_dataset(source, engine="h5netcdf") as opened:
-            dataset = opened.load()
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError) as error:
+        with (
+            warnings.catch_warnings(),
+            # A file of tables has no dates; units that look like such are somebody else's.
+            xr.open_dataset(io.BytesIO(data), engine="h5netcdf", decode_times=False) as opened,
+        ):
+            warnings.simplefilter("ignore")
+            if opened.nbytes > _MAX_LOADED:
+                raise TableError(
+                    f"claims arrays of {opened.nbytes / 1e6:.0f} MB: no coefficient table",
+                    source=source,
+                )
+            return opened.load()
+    except TableError:
+        raise
+    except Exception as error:  # the libraries raise a dozen kinds on damaged files
         raise TableError(
             f"not a readable netCDF file, it may be truncated or damaged ({error}); "
             "make it again with `rotorsim table`",
             source=source,
         ) from error
-    _check_provenance(dataset, source)
-    for variable in dataset.variables.values():
-        variable.encoding = {}
-    return dataset
 
 
 def _check_provenance(dataset: xr.Dataset, source: Path) -> None:
@@ -84,13 +135,22 @@ def _check_provenance(dataset: xr.Dataset, source: Path) -> None:
             "not a coefficient table: the attribute rotorsim_table_version is missing",
             source=source,
         )
-    if int(version) > TABLE_VERSION:
+    try:
+        number = int(version)
+    except (TypeError, ValueError, OverflowError):
         raise TableError(
-            f"written in table format {int(version)}, this program reads up to {TABLE_VERSION}; "
+            "must be a whole number", source=source, key="rotorsim_table_version",
+            value=str(version)[:50],
+        ) from None  # fmt: skip
+    if number > TABLE_VERSION:
+        raise TableError(
+            f"written in table format {number}, this program reads up to {TABLE_VERSION}; "
             "use a newer rotorsim",
             source=source,
         )
     text, digest = dataset.attrs.get("scenario"), dataset.attrs.get("scenario_sha256")
+    if not isinstance(text, str | None) or not isinstance(digest, str | None):
+        raise TableError("must be text", source=source, key="scenario, scenario_sha256")
     if (text is None) != (digest is None) or (text is not None and scenario_digest(text) != digest):
         raise TableError(
             "the scenario's text does not match its SHA-256: the file was changed after it was "

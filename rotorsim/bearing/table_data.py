@@ -29,6 +29,11 @@ DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
 FREQUENCY = "frequency_ratio"
 """Dimension of the variables ``kxx_of_frequency`` ... ``cyy_of_frequency``, where given."""
 
+LARGEST = 1e20
+"""Of stiffness [N/m] and damping [N s/m]; beyond, their products would overflow."""
+FASTEST = 1e6
+"""Shaft speed [rad/s]."""
+
 SIGNS = (
     "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",
     "first index: direction of the force, second: direction of the displacement or velocity.",
@@ -307,16 +312,42 @@ def check(dataset: xr.Dataset, source: str | Path | None = None) -> None:
         )
     if any(dataset[name].dims != dims for name in (*COEFFICIENTS, "status")):
         raise TableError("kxx ... cyy and status must share their dimensions", source=source)
+    if any(dataset[name].dims != (name,) for name in DIMENSIONS):
+        raise TableError("coordinates must have one dimension, their own", source=source)
+    _check_numbers(dataset, source)
+    converged = np.asarray(dataset["status"].values == str(SolveStatus.CONVERGED))
+    for name in COEFFICIENTS:
+        values = dataset[name].values
+        for bad, words in (
+            (converged & ~np.isfinite(values), "not a number at a converged point"),
+            (np.abs(values) > LARGEST, f"is beyond every sensible coefficient ({LARGEST:g})"),
+        ):
+            if bad.any():
+                place = np.argwhere(bad)[0]
+                at = ", ".join(
+                    f"{d}={dataset[d].values[i]}" for d, i in zip(dims, place, strict=True)
+                )
+                raise TableError(f"{words} ({at})", source=source, key=name)
+
+
+def _check_numbers(dataset: xr.Dataset, source: str | Path | None) -> None:
+    """Raise `TableError` unless numbers are real numbers, and speeds and clearances sensible."""
+    numeric = ("speed", "radial_clearance", *COEFFICIENTS, *SCALARS)
+    for name in (n for n in numeric if n in dataset.variables):
+        if dataset[name].dtype.kind not in "fiu":
+            raise TableError("must be real numbers", source=source, key=name)
     speed = np.asarray(dataset["speed"].values, dtype=float)
     if not speed.size or not np.all(np.isfinite(speed)) or np.any(np.diff(speed) <= 0.0):
         raise TableError("speeds must be finite and ascend", source=source, key="speed")
-    converged = np.asarray(dataset["status"].values == str(SolveStatus.CONVERGED))
-    for name in COEFFICIENTS:
-        bad = converged & ~np.isfinite(dataset[name].values)
-        if bad.any():
-            place = np.argwhere(bad)[0]
-            at = ", ".join(f"{d}={dataset[d].values[i]}" for d, i in zip(dims, place, strict=True))
-            raise TableError(f"not a number at a converged point ({at})", source=source, key=name)
+    if speed[0] < 0.0 or speed[-1] > FASTEST:
+        raise TableError(
+            f"speeds must be 0 to {FASTEST:g} rad/s", source=source, key="speed",
+            value=float(speed[0] if speed[0] < 0.0 else speed[-1]),
+        )  # fmt: skip
+    clearance = np.asarray(dataset["radial_clearance"].values, dtype=float)
+    unknown = clearance.size == 1 and np.isnan(clearance[0])
+    if not unknown and not np.all((clearance > 0.0) & (clearance < 1.0)):
+        raise TableError("must be between 0 and 1 m", source=source, key="radial_clearance")
 
 
 def scenario_digest(text: str) -> str:
