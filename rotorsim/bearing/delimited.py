@@ -1,58 +1,102 @@
-"""Tables as CSV: anyone's speed, K and C, units in the header.
+"""Coefficients as CSV: how measured ones, or another program's, come in, and how tables go out.
 
-A header names each column and its unit, for example::
+The header names each column and its unit, in the same cell or in the row below::
 
     speed [rpm],kxx [N/m],kxy [N/m],kyx [N/m],kyy [N/m],cxx [N s/m],cxy [N s/m],...
 
 Lines beginning with ``#`` are comments. Optional columns: ``thermal_model``, ``radial_clearance``,
-``load``, ``status``. Speeds ascend within each thermal model and clearance, which all have the same
-ones. A row whose status is not ``converged`` may hold ``nan``.
+``load``, ``status``; columns of another name are left out. Speeds ascend within each thermal model
+and clearance, which all have the same ones; without a column of speeds the coefficients are
+constant. A row whose status is not ``converged`` may hold ``nan``. Columns are separated by commas,
+or by semicolons, tabs or bars, and then the decimals may be written with a comma.
 """
 
 from __future__ import annotations
 
+import codecs
 import csv
+import io
 import math
 import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..atomic import replacing
-from ..errors import TableError
-from ..file_kinds import HEAD, FileKind, recognise, sentence
+from ..atomic import write_text
+from ..errors import InputError, TableError
+from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
 from ..status import SolveStatus
-from .table_data import COEFFICIENTS, CONVENTIONS, DIMENSIONS, build
+from ..units import parse_unit
+from .table_data import (
+    COEFFICIENTS,
+    CONSTANT,
+    CONSTANT_SPEEDS,
+    CONVENTIONS,
+    DIMENSIONS,
+    FASTEST,
+    LARGEST,
+    NOTES,
+    build,
+    without_standstill,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_LBF, _INCH = 4.4482216152605, 0.0254  # exact by definition
-_STIFFNESS = {
-    "N/m": 1.0, "N/mm": 1e3, "N/um": 1e6, "kN/m": 1e3, "kN/mm": 1e6, "MN/m": 1e6, "GN/m": 1e9,
-    "lbf/in": _LBF / _INCH,
-}  # fmt: skip
-_DAMPING = {
-    unit: factor * scale
-    for base, factor in (("N", 1.0), ("kN", 1e3), ("MN", 1e6))
-    for length, scale in (("m", 1.0), ("mm", 1e3))
-    for unit in (f"{base} s/{length}", f"{base}*s/{length}", f"{base}.s/{length}")
-} | {"lbf s/in": _LBF / _INCH, "lbf*s/in": _LBF / _INCH}
-_UNITS: dict[str, dict[str, float]] = {
-    "speed": {"rad/s": 1.0, "rpm": math.pi / 30.0, "Hz": 2.0 * math.pi, "krpm": 1e3 * math.pi / 30},
-    "radial_clearance": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "mil": 2.54e-5, "in": _INCH},
-    "load": {"N": 1.0, "kN": 1e3, "lbf": _LBF},
-    **{name: _STIFFNESS if name[0] == "k" else _DAMPING for name in COEFFICIENTS},
+_MAX_BYTES = 20_000_000
+_KINDS = {
+    "speed": "speed",
+    "radial_clearance": "length",
+    "load": "force",
+    **{name: "stiffness" if name[0] == "k" else "damping" for name in COEFFICIENTS},
 }
+"""Columns of quantities, and the kind of each."""
+_UNIT_EXAMPLES = {
+    "speed": "rpm, rad/s, Hz",
+    "length": "um, mm, mil",
+    "force": "N, kN, lbf",
+    "stiffness": "N/m, MN/m, lbf/in",
+    "damping": "N s/m, kN s/m, lbf s/in",
+}
+_LARGEST = {"speed": FASTEST, "length": 1.0, "force": LARGEST, "stiffness": LARGEST}
+_MASSES = ("mxx", "mxy", "myx", "myy")
+_WHIRL = ("frequency", "whirl_frequency", "excitation_frequency", "frequency_ratio")
 _TEXT = ("thermal_model", "status")
-_HEADER = re.compile(r"\s*([A-Za-z_]+)\s*(?:\[([^\]]*)\])?\s*")
-_REQUIRED = ("speed", *COEFFICIENTS)
-_SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
+_OTHER_NAMES = {"rpm": "speed", "rotor_speed": "speed", "shaft_speed": "speed"} | {
+    f"{name[0]}_{name[1:]}": name for name in (*COEFFICIENTS, *_MASSES)
+}
+_HEADER = re.compile(r"\s*([^\[\]()]*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))?\s*")
+_NUMBER = re.compile(
+    r"[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII
+)
+_DIGITS = re.compile(r"[+-]?[\d.,]+(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
+"""A number, or what somebody meant as one."""
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
+_SEPARATORS = (",", ";", "\t", "|")
+_TITLE_LINES = 50
+"""Lines of a sheet that may stand before its header."""
 _WRITTEN = "speed as written"
 """Of a row: the speed in the file's own unit, for messages."""
+_LONGEST_NAME = 100
+"""Characters in a header's cell."""
+_FORMULA = ("=", "+", "-", "@", "\t", "\r")
+"""How a cell begins that a spreadsheet program would evaluate."""
 
 Row = dict[str, float | str]
+Line = tuple[int, list[str]]
+"""Number of a line in the file, and its cells."""
+
+
+@dataclass(frozen=True)
+class _Column:
+    """What a column holds: `name` is a key of `_KINDS`, one of `_MASSES`, or one of `_TEXT`."""
+
+    place: int
+    name: str
+    factor: float = 1.0
 
 
 def read(path: str | Path) -> xr.Dataset:
@@ -64,29 +108,29 @@ def read(path: str | Path) -> xr.Dataset:
         With the file, and the row and column where something is wrong.
     """
     source = Path(path)
-    lines = _text(source).splitlines()
-    numbered = [
-        (number, fields)
-        for number, fields in enumerate(csv.reader(lines), start=1)
-        if any(f.strip() for f in fields) and not fields[0].lstrip().startswith("#")
-    ]
-    if len(numbered) < 2:
+    lines, separator = _lines(_text(source), source)
+    lines = _from_header(lines)
+    units, rows = _units_row(lines)
+    if not rows:
         raise TableError("a header and at least one row are needed", source=source)
-    columns = _parse_header(numbered[0][1], source)
-    rows = [
-        (number, _parse_row(fields, columns, number, source)) for number, fields in numbered[1:]
+    columns, left_out = _columns(lines[0][1], units, rows, source)
+    comma = separator != "," and _decimal_comma(rows, columns, source)
+    width = len(lines[0][1])
+    parsed = [
+        (number, _row(cells, columns, width, comma, number, source)) for number, cells in rows
     ]
-    return _arrange(rows, source)
+    notes = [f"columns left out: {', '.join(left_out)}"] if left_out else []
+    return without_standstill(_arrange(parsed, source, notes), source)
 
 
 def _text(source: Path) -> str:
     """Text of a file that is one, and no other kind of file."""
-    try:
-        data = source.read_bytes()
-    except OSError as error:
-        raise TableError(f"cannot be read: {error.strerror}", source=source) from error
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        raise TableError('is text in UTF-16; save it as UTF-8 ("CSV UTF-8")', source=source)
+    data = read_bytes(source, _MAX_BYTES, TableError)
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        try:
+            return data.decode("utf-16")
+        except UnicodeDecodeError as error:
+            raise TableError(f"is no text in UTF-16 ({error.reason})", source=source) from None
     kind = recognise(data[:HEAD])
     if kind not in (None, FileKind.CSV):
         raise TableError(f"{sentence(kind)}; here a CSV table is needed", source=source)
@@ -98,117 +142,291 @@ def _text(source: Path) -> str:
             f"must be text in UTF-8; byte 0x{data[error.start]:02x} in line {line} is not; save it "
             'as UTF-8 ("CSV UTF-8")',
             source=source,
-        ) from error
+        ) from None
 
 
-def _check_separator(fields: list[str], source: Path) -> None:
-    """Refuse a header whose columns something else than commas separates."""
-    for separator, name in _SEPARATORS.items():
-        if len(",".join(fields).split(separator)) >= len(_REQUIRED) > len(fields):
+def _lines(text: str, source: Path) -> tuple[list[Line], str]:
+    """Lines that hold something and are no comments, and what separates their cells."""
+    lines = text.splitlines()
+    stated = re.match(r"sep=([,;|\t])$", lines[0].strip(" \"'")) if lines else None
+    if stated:  # a line for spreadsheet programs
+        lines[0] = ""
+    separator = stated[1] if stated else _separator(lines)
+    try:
+        found = [
+            (number, [cell.strip() for cell in cells])
+            for number, cells in enumerate(csv.reader(lines, delimiter=separator), start=1)
+            if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#")
+        ]
+    except csv.Error as error:
+        raise TableError(f"is no CSV table: {error}", source=source) from None
+    return found, separator
+
+
+def _separator(lines: Sequence[str]) -> str:
+    """Separator of the first line that it cuts into the columns of a table; else the comma."""
+    for line in lines[:_TITLE_LINES]:
+        if line.strip() and not line.lstrip().startswith("#"):
+            for separator in _SEPARATORS:
+                if _is_header(line.split(separator)):
+                    return separator
+    return ","
+
+
+def _is_header(cells: Sequence[str]) -> bool:
+    return {"kxx", "cxx"} <= {_named(cell)[0] for cell in cells}
+
+
+def _from_header(lines: list[Line]) -> list[Line]:
+    """Without the title lines that sheets begin with."""
+    for place, (_, cells) in enumerate(lines[:_TITLE_LINES]):
+        if _is_header(cells):
+            return lines[place:]
+    return lines
+
+
+def _named(cell: str) -> tuple[str, str]:
+    """Name as this program calls it, and unit, of a header's cell."""
+    match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_NAME else None
+    if match is None:
+        return cell.strip()[:_LONGEST_NAME], ""
+    name = re.sub(r"[\s_]+", "_", match[1].strip(" \"'").lower())
+    unit = (match[2] or match[3] or "").strip()
+    return _OTHER_NAMES.get(name, name), unit
+
+
+def _units_row(lines: list[Line]) -> tuple[list[str] | None, list[Line]]:
+    """Cells of the row of units, where there is one, and the rows below."""
+    if len(lines) < 2:
+        return None, []
+    names = [_named(cell)[0] for cell in lines[0][1]]
+    cells = lines[1][1]
+    known = [cell for name, cell in zip(names, cells, strict=False) if name in _KINDS]
+    numbers = any(_NUMBER.fullmatch(cell) or _DIGITS.fullmatch(cell) for cell in known)
+    stated = any(_named(cell)[1] for cell in lines[0][1] if _named(cell)[0] in COEFFICIENTS)
+    if any(known) and not numbers and not stated:
+        return [cell.strip("[]() ") for cell in cells], lines[2:]
+    return None, lines[1:]
+
+
+def _columns(
+    header: list[str], units: list[str] | None, rows: list[Line], source: Path
+) -> tuple[list[_Column], list[str]]:
+    """Columns that count, and the names of those that are left out."""
+    columns: list[_Column] = []
+    left_out: list[str] = []
+    for place, cell in enumerate(header):
+        name, unit = _named(cell)
+        if not unit and units is not None and place < len(units):
+            unit = units[place]
+        if not unit and cell.strip().lower() == "rpm":
+            unit = "rpm"
+        if name in _KINDS:
+            columns.append(_Column(place, name, _factor(name, unit, cell, source)))
+        elif name in _TEXT or name in _MASSES:
+            columns.append(_Column(place, name))
+        elif name in _WHIRL:
             raise TableError(
-                f"the columns are separated by {name}; separate them by commas, with a point for "
-                "the decimals",
-                source=source,
-                key="header",
-            )
-
-
-def _parse_header(fields: list[str], source: Path) -> list[tuple[str, float]]:
-    """Name and factor to SI of every column; the factor of a text is 1."""
-    _check_separator(fields, source)
-    columns: list[tuple[str, float]] = []
-    for field in fields:
-        match = _HEADER.fullmatch(field)
-        name, unit = (match[1].lower(), (match[2] or "").strip()) if match else (field, "")
-        if name in _TEXT:
-            columns.append((name, 1.0))
-            continue
-        if name not in _UNITS:
-            raise TableError(
-                f"unknown column; known are {', '.join((*_UNITS, *_TEXT))}",
-                source=source, key="header", value=field,
+                "coefficients over whirl frequency are not read; where it is the shaft's speed, "
+                "delete the column",
+                source=source, key="header", value=_shown(cell),
             )  # fmt: skip
-        if unit not in _UNITS[name]:
-            raise TableError(
-                f"column {name} needs a unit in brackets: {', '.join(_UNITS[name])}",
-                source=source, key="header", value=field,
-            )  # fmt: skip
-        columns.append((name, _UNITS[name][unit]))
-    names = [name for name, _ in columns]
-    missing = [name for name in _REQUIRED if name not in names]
+        elif any(place < len(cells) and cells[place] for _, cells in rows):
+            left_out.append(cell[:_LONGEST_NAME] or f"number {place + 1}")
+    names = [column.name for column in columns]
+    missing = [name for name in COEFFICIENTS if name not in names]
     if missing:
-        raise TableError(f"columns are missing: {', '.join(missing)}", source=source, key="header")
+        known = ", ".join((*_KINDS, *_TEXT))
+        unknown = f"; unknown column: {', '.join(left_out[:9])}; known are {known}"
+        raise TableError(
+            f"columns are missing: {', '.join(missing)}{unknown if left_out else ''}",
+            source=source, key="header",
+        )  # fmt: skip
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise TableError(f"columns occur twice: {', '.join(twice)}", source=source, key="header")
-    return columns
+    return sorted(columns, key=lambda column: column.name != "speed"), left_out
 
 
-def _parse_row(
-    fields: list[str], columns: list[tuple[str, float]], number: int, source: Path
-) -> Row:
-    if len(fields) != len(columns):
-        more = len(fields) > len(columns)
+def _factor(name: str, unit: str, cell: str, source: Path) -> float:
+    """SI value over the number in the file."""
+    kind = _KINDS[name]
+    try:
+        return parse_unit(unit, kind)[1]
+    except InputError as error:
+        reason = f": {error.message}" if unit else ""
         raise TableError(
-            f"has {len(fields)} fields, the header {len(columns)}"
+            f"column {name} needs a unit in brackets, or in the row below "
+            f"({_UNIT_EXAMPLES[kind]} and others){reason}",
+            source=source, key="header", value=_shown(cell if not unit or unit in cell else unit),
+        ) from None  # fmt: skip
+
+
+def _decimal_comma(rows: list[Line], columns: list[_Column], source: Path) -> bool:
+    """Whether decimals are written with a comma, in a file whose columns something else separates.
+
+    Raises
+    ------
+    TableError
+        Commas stand only where thousands might be parted, or numbers have points as well.
+    """
+    places = [column.place for column in columns if column.name in _KINDS]
+    with_comma = [
+        (number, cells[place])
+        for number, cells in rows
+        for place in places
+        if place < len(cells) and "," in cells[place]
+    ]
+    if not with_comma:
+        return False
+    number, cell = with_comma[0]
+    if all(_THOUSANDS.fullmatch(cell) for _, cell in with_comma):
+        raise TableError(
+            "the comma may stand for decimals or between thousands; write decimals with a point",
+            source=source, key=f"row {number}", value=_shown(cell),
+        )  # fmt: skip
+    for number, cells in rows:
+        for place in places:
+            if place < len(cells) and "." in cells[place]:
+                raise TableError(
+                    "decimals are written with a point here and with a comma elsewhere",
+                    source=source, key=f"row {number}", value=_shown(cells[place]),
+                )  # fmt: skip
+    return True
+
+
+def _row(
+    cells: list[str], columns: list[_Column], width: int, comma: bool, number: int, source: Path
+) -> Row:
+    """Values of a line [SI]; `width` is the number of cells in the header."""
+    needed = max(column.place for column in columns) + 1
+    more = any(cells[width:])
+    if more or len(cells) < needed:
+        raise TableError(
+            f"has {len(cells)} fields, the header {width}"
             + ("; decimals are written with a point, not a comma" if more else ""),
             source=source,
             key=f"row {number}",
         )
     row: Row = {"thermal_model": "given", "status": str(SolveStatus.CONVERGED)}
-    texts = {n: f.strip() for (n, _), f in zip(columns, fields, strict=True) if n in _TEXT}
-    row.update(texts)
+    for column in columns:
+        if column.name in _TEXT:
+            row[column.name] = _plain_text(cells[column.place])
     if row["status"] not in set(SolveStatus):
         raise TableError(
             f"must be one of {', '.join(SolveStatus)}",
-            source=source, key=f"row {number}, column status", value=row["status"],
+            source=source, key=f"row {number}, column status", value=_shown(str(row["status"])),
         )  # fmt: skip
-    for (name, factor), field in zip(columns, fields, strict=True):
-        if name in _TEXT:
-            continue
-        try:
-            value = float(field)
-        except ValueError:
-            comma = "; write decimals with a point" if re.search(r"\d,\d", field) else ""
-            raise TableError(
-                f"not a number{comma}",
-                source=source,
-                key=f"row {number}, column {name}",
-                value=field,
-            ) from None
-        excused = name not in ("speed", "radial_clearance") and row["status"] != "converged"
-        if not (math.isfinite(value) or excused):
-            raise TableError(
-                "must be finite", source=source, key=f"row {number}, column {name}", value=field
-            )
-        if name in ("speed", "radial_clearance", "load") and value <= 0.0:
-            raise TableError(
-                "must be above 0", source=source, key=f"row {number}, column {name}", value=field
-            )
-        row[name] = value * factor
-        if name == "speed":
-            row[_WRITTEN] = field.strip()
+    for column in columns:
+        if column.name not in _TEXT:
+            cell = cells[column.place]
+            key = f"row {number}, column {column.name}"
+            if column.name in _MASSES:
+                _check_no_mass(cell.replace(",", ".") if comma else cell, key, source)
+                continue
+            value = _value(cell.replace(",", ".") if comma else cell, cell, key, source)
+            row[column.name] = _checked(value * column.factor, row, column.name, cell, key, source)
+            if column.name == "speed":
+                row[_WRITTEN] = _shown(cell)
     return row
 
 
-def _arrange(rows: list[tuple[int, Row]], source: Path) -> xr.Dataset:
+def _shown(cell: str) -> str:
+    """Cell for a message."""
+    return cell if len(cell) <= _LONGEST_NAME else f"{cell[:_LONGEST_NAME]}..."
+
+
+def _value(text: str, cell: str, key: str, source: Path) -> float:
+    if _NUMBER.fullmatch(text):
+        return float(text)
+    comma = "; write decimals with a point" if re.search(r"\d,\d", text) else ""
+    raise TableError(f"not a number{comma}", source=source, key=key, value=_shown(cell))
+
+
+def _checked(value: float, row: Row, name: str, cell: str, key: str, source: Path) -> float:
+    """Return a value [SI] that its column may hold."""
+    unused = row["status"] != "converged" or row.get("speed") == 0.0
+    excused = name not in ("speed", "radial_clearance") and unused
+    if not (math.isfinite(value) or excused):
+        raise TableError("must be finite", source=source, key=key, value=_shown(cell))
+    if abs(value) > _LARGEST.get(_KINDS[name], LARGEST):
+        raise TableError(
+            "is beyond every sensible value", source=source, key=key, value=_shown(cell)
+        )
+    if name == "speed" and value < 0.0:
+        raise TableError("must not be below 0", source=source, key=key, value=_shown(cell))
+    if name in ("radial_clearance", "load") and value <= 0.0:
+        raise TableError("must be above 0", source=source, key=key, value=_shown(cell))
+    return value
+
+
+def _check_no_mass(text: str, key: str, source: Path) -> None:
+    """Refuse added mass: of a number that is not 0, or of what is no number."""
+    if text and _value(text, text, key, source) != 0.0:
+        raise TableError(
+            "added mass is not known here: K and C alone would give another verdict; take it into "
+            "the rotor's mass and set it to 0",
+            source=source, key=key, value=_shown(text),
+        )  # fmt: skip
+
+
+def _plain_text(cell: str) -> str:
+    """Text of a cell, without the apostrophe that `write` puts before a formula's sign."""
+    return cell[1:] if cell[:1] == "'" and cell[1:].startswith(_FORMULA) else cell
+
+
+def _arrange(rows: list[tuple[int, Row]], source: Path, notes: list[str]) -> xr.Dataset:
     """Group rows by thermal model and clearance, check the speeds, build the dataset."""
     groups: dict[tuple[str, float], list[tuple[int, Row]]] = {}
+    constant = "speed" not in rows[0][1]
     for number, row in rows:
         # NaN would make every row a group of its own.
         key = (str(row["thermal_model"]), float(row.get("radial_clearance", -1.0)))
         group = groups.setdefault(key, [])
+        if group and constant:
+            raise TableError(
+                "several rows need a column of speeds", source=source, key=f"row {number}"
+            )
         if group and float(row["speed"]) <= float(group[-1][1]["speed"]):
             raise TableError(
                 f"speeds must ascend, and {group[-1][1][_WRITTEN]} stands before; sort the rows",
                 source=source, key=f"row {number}, column speed", value=row[_WRITTEN],
             )  # fmt: skip
         group.append((number, row))
+    if constant:
+        groups = {
+            key: [(number, {**row, "speed": speed}) for number, row in group
+                  for speed in CONSTANT_SPEEDS]
+            for key, group in groups.items()
+        }  # fmt: skip
     models = list(dict.fromkeys(model for model, _ in groups))
     clearances = sorted({clearance for _, clearance in groups})
-    first = next(iter(groups.values()))
-    speeds = [float(row["speed"]) for _, row in first]
-    ordered: list[Row] = []
+    speeds = [float(row["speed"]) for _, row in next(iter(groups.values()))]
+    ordered = list(_ordered(groups, models, clearances, speeds, source))
+    known_clearances = [np.nan] if clearances == [-1.0] else clearances
+    shape = (len(models), len(clearances), len(speeds))
+    names = [n for n in (*COEFFICIENTS, "load") if n in ordered[0]]
+    variables = {n: np.array([float(r[n]) for r in ordered]).reshape(shape) for n in names}
+    status = np.array([str(r["status"]) for r in ordered], dtype=object).reshape(shape)
+    variables["status"] = status
+    values = (models, known_clearances, speeds)
+    coordinates: dict[str, Any] = dict(zip(DIMENSIONS, values, strict=True))
+    attributes: dict[str, Any] = {"title": f"Coefficients from {source.name}"}
+    if constant:
+        attributes[CONSTANT] = 1
+    if notes:
+        attributes[NOTES] = "\n".join(notes)
+    return build(coordinates, variables, attributes)
+
+
+def _ordered(
+    groups: dict[tuple[str, float], list[tuple[int, Row]]],
+    models: list[str],
+    clearances: list[float],
+    speeds: list[float],
+    source: Path,
+) -> Iterator[Row]:
+    """Rows model by model and clearance by clearance, all with the same speeds."""
     for model in models:
         for clearance in clearances:
             group = groups.get((model, clearance), [])
@@ -218,20 +436,11 @@ def _arrange(rows: list[tuple[int, Row]], source: Path) -> xr.Dataset:
                     f"thermal model {model}, clearance {clearance:.6g} m: every thermal model and "
                     "clearance needs the same speeds", source=source, key=f"{where}, column speed",
                 )  # fmt: skip
-            ordered += [row for _, row in group]
-    known_clearances = [np.nan] if clearances == [-1.0] else clearances
-    shape = (len(models), len(clearances), len(speeds))
-    names = [n for n in (*COEFFICIENTS, "load") if n in ordered[0]]
-    variables = {n: np.array([float(r[n]) for r in ordered]).reshape(shape) for n in names}
-    status = np.array([str(r["status"]) for r in ordered], dtype=object).reshape(shape)
-    variables["status"] = status
-    values = (models, known_clearances, speeds)
-    coordinates: dict[str, Any] = dict(zip(DIMENSIONS, values, strict=True))
-    return build(coordinates, variables, {"title": f"Coefficients from {source.name}"})
+            yield from (row for _, row in group)
 
 
 def write(dataset: xr.Dataset, path: str | Path) -> Path:
-    """Write the coefficients (SI) of every point.
+    """Write the coefficients (SI) of every point; constant ones once, without a speed.
 
     Raises
     ------
@@ -243,26 +452,31 @@ def write(dataset: xr.Dataset, path: str | Path) -> Path:
     single = dataset.squeeze([d for d in dims if d not in DIMENSIONS and dataset.sizes[d] == 1])
     if set(single["kxx"].dims) != set(DIMENSIONS):
         raise TableError(f"select one of each further dimension first: {dims}", source=target)
+    single = single.isel(speed=slice(0, 1)) if CONSTANT in dataset.attrs else single
     names = [n for n in (*COEFFICIENTS, "load") if n in single]
     with_clearance = bool(np.all(np.isfinite(single["radial_clearance"].values)))
+    with_speed = CONSTANT not in dataset.attrs
     header = ["thermal_model", *(["radial_clearance [m]"] if with_clearance else [])]
-    header += ["speed [rad/s]", "status"]
+    header += [*(["speed [rad/s]"] if with_speed else []), "status"]
     header += [f"{n} [{'N' if n == 'load' else 'N/m' if n[0] == 'k' else 'N s/m'}]" for n in names]
+    stream = io.StringIO()
+    stream.writelines(f"# {line}\n" for line in CONVENTIONS)
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(header)
+    for index in np.ndindex(single["kxx"].shape):
+        model, clearance, speed = (
+            single[d].values[i] for d, i in zip(DIMENSIONS, index, strict=True)
+        )
+        row = [_cell(str(model)), *([repr(float(clearance))] if with_clearance else [])]
+        row += [*([repr(float(speed))] if with_speed else []), single["status"].values[index]]
+        writer.writerow(row + [repr(float(single[n].values[index])) for n in names])
     try:
-        with (
-            replacing(target) as temporary,
-            temporary.open("w", newline="", encoding="utf-8") as file,
-        ):
-            file.writelines(f"# {line}\n" for line in CONVENTIONS)
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(header)
-            for index in np.ndindex(single["kxx"].shape):
-                model, clearance, speed = (
-                    single[d].values[i] for d, i in zip(DIMENSIONS, index, strict=True)
-                )
-                row = [model, *([repr(float(clearance))] if with_clearance else [])]
-                row += [repr(float(speed)), single["status"].values[index]]
-                writer.writerow(row + [repr(float(single[n].values[index])) for n in names])
+        write_text(target, stream.getvalue())
     except OSError as error:
         raise TableError(f"cannot be written: {error.strerror}", source=target) from error
     return target
+
+
+def _cell(text: str) -> str:
+    """Text as a cell that no spreadsheet program takes for a formula."""
+    return f"'{text}" if text.startswith(_FORMULA) else text

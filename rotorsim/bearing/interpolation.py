@@ -104,6 +104,8 @@ class CoefficientInterpolator:
         Coefficients, highest power first, of the cubic in ``speed - speeds[i]`` for the interval
         above speed i (constant for the last): kxx kxy kyx kyy cxx cxy cyx cyy load. A compiled
         integrator can evaluate these itself.
+    constant : bool
+        The coefficients hold at any speed.
 
     Notes
     -----
@@ -115,10 +117,15 @@ class CoefficientInterpolator:
     speeds: Array
     converged: NDArray[np.bool_]
     cubic: Array
+    constant: bool = False
 
     @classmethod
     def from_columns(
-        cls, speeds: Array, converged: NDArray[np.bool_], columns: Array
+        cls,
+        speeds: Array,
+        converged: NDArray[np.bool_],
+        columns: Array,
+        constant: bool = False,
     ) -> CoefficientInterpolator:
         """Fit (n, 9) `columns` over ascending `speeds` [rad/s]."""
         from scipy.interpolate import PchipInterpolator
@@ -132,12 +139,12 @@ class CoefficientInterpolator:
                 run = columns[start:stop][:, known]
                 fit = PchipInterpolator(speeds[start:stop], run, axis=0)
                 cubic[:, start : stop - 1, known] = fit.c
-        return cls(speeds, converged, cubic)
+        return cls(speeds, converged, cubic, constant)
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """Lowest and highest tabulated speed [rad/s]."""
-        return float(self.speeds[0]), float(self.speeds[-1])
+        """Lowest and highest speed at which coefficients are known [rad/s]."""
+        return (0.0, np.inf) if self.constant else (float(self.speeds[0]), float(self.speeds[-1]))
 
     def columns(self, speed: ArrayLike, gaps: Literal["raise", "nan"] = "raise") -> Array:
         """Evaluate the (..., 9) columns at `speed` [rad/s]; see `__call__`."""

@@ -131,6 +131,37 @@ class CoefficientTable:
         return np.asarray(self.dataset["speed"].values, dtype=float)
 
     @property
+    def constant(self) -> bool:
+        """Whether the coefficients hold at any speed, the tabulated ones being examples."""
+        return assembly.CONSTANT in self.dataset.attrs
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What the reader of another program's file left out or took for granted."""
+        return tuple(str(self.dataset.attrs.get(assembly.NOTES, "")).splitlines())
+
+    def with_speeds(self, speeds: ArrayLike) -> CoefficientTable:
+        """Tabulate constant coefficients at other speeds [rad/s], ascending.
+
+        Raises
+        ------
+        TableError
+            The coefficients are not constant, or the speeds do not ascend.
+        """
+        if not self.constant:
+            raise TableError(
+                f"the table has its own speeds, {self.speeds[0]:.6g} to {self.speeds[-1]:.6g} "
+                "rad/s; others are for constant coefficients", key="speeds",
+            )  # fmt: skip
+        wanted = np.atleast_1d(np.asarray(speeds, dtype=float))
+        places = np.zeros(wanted.size, dtype=int)
+        return CoefficientTable(
+            self.dataset.isel(speed=places).assign_coords(
+                speed=("speed", wanted, assembly.cf_attributes("speed"))
+            )
+        )
+
+    @property
     def stiffness(self) -> np.ndarray:
         """(..., n_speed, 2, 2) stiffness [N/m] in the order of the dataset's dimensions."""
         return self._matrices("k")
@@ -229,7 +260,7 @@ class CoefficientTable:
             for name in names
         ]
         return CoefficientInterpolator.from_columns(
-            one.speeds, one.converged.reshape(shape), np.stack(columns, axis=-1)
+            one.speeds, one.converged.reshape(shape), np.stack(columns, axis=-1), one.constant
         )
 
     def at(self, speed: float, **choices: Any) -> Coefficients:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import hashlib
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -31,8 +32,15 @@ FREQUENCY = "frequency_ratio"
 
 LARGEST = 1e20
 """Of stiffness [N/m] and damping [N s/m]; beyond, their products would overflow."""
-FASTEST = 1e6
-"""Shaft speed [rad/s]."""
+SLOWEST, FASTEST = 1e-6, 1e6
+"""Shaft speeds [rad/s]."""
+
+CONSTANT = "constant"
+"""Attribute of a table whose coefficients hold at any speed, not at the tabulated ones only."""
+CONSTANT_SPEEDS = tuple(1000.0 * (step + 1) * math.pi / 30.0 for step in range(20))
+"""Speeds at which constant coefficients are tabulated unless others are wanted [rad/s]."""
+NOTES = "notes"
+"""Attribute with what a reader left out or took for granted, a line each."""
 
 SIGNS = (
     "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",
@@ -283,6 +291,8 @@ def with_provenance(dataset: xr.Dataset) -> xr.Dataset:
     attributes.setdefault("rotorsim_version", _program_version())
     now = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
     attributes.setdefault("date", now)
+    if NOTES in attributes:  # were said when the other program's file was read
+        attributes["history"] = attributes.pop(NOTES)
     attributes["rotorsim_table_version"] = TABLE_VERSION
     attributes["frame"] = " ".join(CONVENTIONS)
     if "scenario" in attributes:
@@ -336,18 +346,33 @@ def _check_numbers(dataset: xr.Dataset, source: str | Path | None) -> None:
     for name in (n for n in numeric if n in dataset.variables):
         if dataset[name].dtype.kind not in "fiu":
             raise TableError("must be real numbers", source=source, key=name)
+    if CONSTANT in dataset.attrs and not all(
+        np.array_equal(values, np.broadcast_to(values[..., :1], values.shape), equal_nan=True)
+        for values in (dataset[name].values for name in COEFFICIENTS)
+    ):
+        raise TableError("constant coefficients differ between speeds", source=source, key=CONSTANT)
     speed = np.asarray(dataset["speed"].values, dtype=float)
     if not speed.size or not np.all(np.isfinite(speed)) or np.any(np.diff(speed) <= 0.0):
         raise TableError("speeds must be finite and ascend", source=source, key="speed")
-    if speed[0] < 0.0 or speed[-1] > FASTEST:
+    if speed[0] < SLOWEST or speed[-1] > FASTEST:
         raise TableError(
-            f"speeds must be 0 to {FASTEST:g} rad/s", source=source, key="speed",
-            value=float(speed[0] if speed[0] < 0.0 else speed[-1]),
+            f"speeds must be {SLOWEST:g} to {FASTEST:g} rad/s", source=source, key="speed",
+            value=float(speed[0] if speed[0] < SLOWEST else speed[-1]),
         )  # fmt: skip
     clearance = np.asarray(dataset["radial_clearance"].values, dtype=float)
     unknown = clearance.size == 1 and np.isnan(clearance[0])
     if not unknown and not np.all((clearance > 0.0) & (clearance < 1.0)):
         raise TableError("must be between 0 and 1 m", source=source, key="radial_clearance")
+
+
+def without_standstill(dataset: xr.Dataset, source: str | Path) -> xr.Dataset:
+    """Leave out the speed 0, at which nothing whirls, and note it; other tables as they are."""
+    if dataset["speed"].values[0] != 0.0:
+        return dataset
+    if dataset.sizes["speed"] == 1:
+        raise TableError("holds the speed 0 only", source=source, key="speed")
+    notes = [*filter(None, [dataset.attrs.get(NOTES)]), "the row at speed 0 is left out"]
+    return dataset.isel(speed=slice(1, None)).assign_attrs({NOTES: "\n".join(notes)})
 
 
 def scenario_digest(text: str) -> str:

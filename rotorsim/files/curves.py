@@ -32,6 +32,8 @@ class Curve:
         [rad/s]
     stiffness, damping : (n, 2, 2) arrays
         [N/m], [N s/m]
+    constant : bool
+        They hold at any speed.
     """
 
     name: str
@@ -39,6 +41,7 @@ class Curve:
     speed: NDArray[np.float64]
     stiffness: NDArray[np.float64]
     damping: NDArray[np.float64]
+    constant: bool = False
 
 
 def curves(table: CoefficientTable) -> Iterator[Curve]:
@@ -61,6 +64,8 @@ def curves(table: CoefficientTable) -> Iterator[Curve]:
         left_out = table.speeds[~usable] * RPM
         facts = [title] if title else []
         facts += [_words(name, value) for name, value in chosen.items() if _known(value)]
+        if table.constant:
+            facts.append("Constant: the same at any speed")
         if left_out.size:
             facts.append(
                 "Left out, not converged, rpm: " + ", ".join(f"{rpm:.6g}" for rpm in left_out)
@@ -71,6 +76,7 @@ def curves(table: CoefficientTable) -> Iterator[Curve]:
             speed=table.speeds[usable],
             stiffness=table.stiffness[index][usable],
             damping=table.damping[index][usable],
+            constant=table.constant,
         )
     if not found:
         raise TableError("no point of the table converged: nothing to write", key="status")

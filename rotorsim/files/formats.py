@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -39,6 +40,7 @@ def _write_text(curve: Curve, path: Path) -> Path:
 
 FORMATS = {
     "ross": "ross.toml",
+    "ross2": "ross2.toml",
     "csv": "csv",
     "mat": "mat",
     "txt": "txt",
@@ -54,7 +56,11 @@ _KINDS = {
     ".json": (FileKind.ROSS, FileKind.JSON),
 }
 _NO_USE = "has no use: this format is in the load frame, only that of ROSS is not"
-_ONE_CURVE: dict[str, Callable[[Curve, Path], Path]] = {"ross": ross.write, "txt": _write_text}
+_ONE_CURVE: dict[str, Callable[..., Path]] = {
+    "ross": ross.write,
+    "ross2": partial(ross.write, version=2),
+    "txt": _write_text,
+}
 
 
 def write_table(
@@ -71,14 +77,15 @@ def write_table(
     ----------
     table : CoefficientTable
     kind : str
-        One of `FORMATS`. ``ross`` and ``txt`` hold one bearing in a file: a table of several
-        thermal models or clearances gives several files.
+        One of `FORMATS`. ``ross`` (ROSS 3), ``ross2`` (ROSS 2) and ``txt`` hold one bearing in a
+        file: a table of several thermal models or clearances gives several files.
     folder : str or Path
         Made if it is missing.
     name : str
         Of the files, without suffix.
     load_direction : float, optional
-        For ``ross``: where the static load points in the frame of ROSS [rad], from x towards y
+        For ``ross`` and ``ross2``: where the static load points in the frame of ROSS [rad], from
+        x towards y
         (with the rotation); by default along -y, the weight. The other formats are in the load
         frame.
 
@@ -95,14 +102,14 @@ def write_table(
     """
     if kind not in FORMATS:
         raise TableError(f"must be one of {', '.join(FORMATS)}", key="format", value=kind)
-    if load_direction is not None and kind != "ross":
+    if load_direction is not None and not kind.startswith("ross"):
         raise TableError(_NO_USE, key="load_direction", value=load_direction)
     where = Path(folder)
     where.mkdir(parents=True, exist_ok=True)
     if kind in _ONE_CURVE:
         write = _ONE_CURVE[kind]
         if load_direction is not None:
-            write = partial(ross.write, load_direction=load_direction)
+            write = partial(write, load_direction=load_direction)
         return [
             write(curve, where / f"{'_'.join(filter(None, (name, curve.name)))}.{FORMATS[kind]}")
             for curve in curves(table)
@@ -120,7 +127,9 @@ def is_table(path: str | Path) -> bool:
     return suffix in _SUFFIXES or (suffix == ".toml" and ross.is_saved_by_ross(source))
 
 
-def read_table(path: str | Path, *, load_direction: float | None = None) -> CoefficientTable:
+def read_table(
+    path: str | Path, *, load_direction: float | None = None, bearing: str | None = None
+) -> CoefficientTable:
     """Read a table from netCDF (``.nc``), CSV (``.csv``) or a bearing saved by ROSS.
 
     Parameters
@@ -130,28 +139,33 @@ def read_table(path: str | Path, *, load_direction: float | None = None) -> Coef
         For a bearing saved by ROSS: where the static load points in its frame [rad], from x
         towards y. By default what the file says ([rotorsim] load_direction, as `write_table`
         writes it), and if it says nothing along -y, the weight.
+    bearing : str, optional
+        Tag or table name of one bearing in a file of ROSS that holds several.
 
     Raises
     ------
     TableError
-        No such file, not readable as what its name says, or a `load_direction` for a table in the
-        load frame or against what the file says.
+        No such file, not readable as what its name says, several bearings and none chosen, or a
+        `load_direction` for a table in the load frame or against what the file says.
     """
     source = Path(path)
     suffix = source.suffix.lower()
-    if not source.exists():
+    if not os.path.lexists(source):
         raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)
-    if source.is_dir():
+    if os.path.isdir(source):
         raise TableError("is a directory; give a table", source=source)
     _check_kind(source, suffix)
     if load_direction is not None and suffix in _LOAD_FRAME_SUFFIXES:
         raise TableError(_NO_USE, source=source, key="load_direction", value=load_direction)
+    if bearing is not None and suffix in _LOAD_FRAME_SUFFIXES:
+        message = "has no use: only files of ROSS hold several bearings"
+        raise TableError(message, source=source, key="--bearing", value=bearing)
     if suffix == ".nc":
         return CoefficientTable.load(source)
     if suffix == ".csv":
         return CoefficientTable.from_csv(source)
     if suffix in (".toml", ".json"):
-        return ross.read(source, load_direction)
+        return ross.read(source, load_direction, bearing)
     raise TableError(
         "a table's name ends in .nc (netCDF), .csv, or .toml or .json (ROSS)", source=source
     )

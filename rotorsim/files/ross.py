@@ -1,8 +1,13 @@
 """Bearings as ROSS saves them: ``BearingElement.load`` reads the files, and its own are read here.
 
-A file is TOML, which allows comments, or on reading JSON; one table whose keys are the arguments of
-ROSS's ``BearingElement``. Where the static load is not the weight, a second table, which ROSS does
-not look at, says where it points: ``[rotorsim]`` with ``load_direction = "45 deg"``.
+A file is TOML, which allows comments, or on reading JSON; a table for each element, whose keys are
+the arguments of its class. Where the static load is not the weight, a further table, which ROSS
+does not look at, says where it points: ``[rotorsim]`` with ``load_direction = "45 deg"``.
+
+The key of the shaft's speed differs: ROSS 2 calls it ``frequency``. ROSS 3 calls it ``speed``, and
+``frequency`` is the frequency of the whirl; it takes a file of ROSS 2 without a word. What ROSS 3
+saves has the key ``interpolation`` in the bearing or ``ross_version`` in the file, except for a few
+classes (its squeeze film damper), whose files look like those of ROSS 2.
 """
 
 from __future__ import annotations
@@ -18,8 +23,9 @@ from numpy.typing import NDArray
 
 from ..atomic import write_text
 from ..bearing.table import CoefficientTable
-from ..bearing.table_data import COEFFICIENTS, SIGNS
+from ..bearing.table_data import COEFFICIENTS, LARGEST, SIGNS
 from ..errors import InputError, TableError
+from ..file_kinds import read_bytes
 from ..units import parse_quantity
 from .curves import Curve
 
@@ -120,32 +126,58 @@ def _turn(load_direction: float) -> NDArray[np.float64]:
     return np.array([[cosine, -sine], [sine, cosine]], dtype=float)
 
 
-_MAX_BYTES = 50_000_000
+_MAX_BYTES = {".json": 50_000_000, ".toml": 5_000_000}
+"""TOML is read slowly."""
 _OWN, _DIRECTION = "rotorsim", "load_direction"
+_BEARING_KEYS = {"kxx", "cxx"}
+_INERTIA = ("mxx", "mxy", "myx", "myy")
+_AXES = {
+    3: (
+        "speed",
+        "For ROSS 3 (speed: the shaft's, in rad/s). ROSS 2 refuses this file; rotorsim export",
+        "--to ross2 writes one for it.",
+    ),
+    2: (
+        "frequency",
+        "For ROSS 2, where frequency is the shaft's speed in rad/s. ROSS 3 takes it for that of",
+        "the whirl, without a word; rotorsim export --to ross writes a file for it.",
+    ),
+}
+"""Key of the shaft's speed by version of ROSS, and what the file says of it."""
 
 
-def write(curve: Curve, path: Path, load_direction: float = WEIGHT) -> Path:
+def write(curve: Curve, path: Path, load_direction: float = WEIGHT, *, version: int = 3) -> Path:
     """Write one curve as a file for ``ross.BearingElement.load``.
 
-    ``load_direction`` is that of the static load in the frame of ROSS [rad], from x towards y.
+    Parameters
+    ----------
+    curve : Curve
+    path : Path
+    load_direction : float
+        That of the static load in the frame of ROSS [rad], from x towards y.
+    version : {3, 2}
+        Of the ROSS that will read the file.
     """
+    axis, *said = _AXES[version]
     head = [
         *curve.facts,
         f'Read it with: bearing = ross.BearingElement.load("{path.name}"), then set bearing.n',
-        "(the node; the file says 0), and another bearing.tag for each use. Speeds (frequency) in",
-        "rad/s, the shaft's.",
+        "(the node; the file says 0), and another bearing.tag for each use.",
+        *(said if not curve.constant else ()),
         *frame_of_ross(load_direction),
     ]
-    tag = "".join(letter for letter in path.stem.removesuffix(".ross") if letter.isprintable())
+    stem = path.stem.removesuffix(".ross").removesuffix(".ross2")
+    tag = "".join(letter for letter in stem if letter.isprintable())
     stiffness = to_ross(curve.stiffness, load_direction).reshape(-1, 4)
     damping = to_ross(curve.damping, load_direction).reshape(-1, 4)
     lines = [f"# {line}" for fact in head for line in fact.splitlines()]
     # The dots and quotes a name may hold would end a bare key.
     lines += ["", f"[{json.dumps('BearingElement_' + tag)}]", "n = 0", f"tag = {json.dumps(tag)}"]
-    columns = {
-        "frequency": curve.speed,
-        **dict(zip(COEFFICIENTS, np.hstack([stiffness, damping]).T, strict=True)),
-    }
+    table = np.hstack([stiffness, damping])
+    columns = dict(zip(COEFFICIENTS, (table[:1] if curve.constant else table).T, strict=True))
+    if not curve.constant:
+        lines += ['interpolation = "pchip"'] if version == 3 else []
+        columns = {axis: curve.speed, **columns}
     # Adding 0.0 turns the negative zeros that turning makes into zeros.
     lines += [
         f"{name} = [{', '.join(repr(float(value) + 0.0) for value in column)}]"
@@ -168,13 +200,22 @@ def is_saved_by_ross(path: Path) -> bool:
 
 def _is_ross(entries: Any) -> bool:
     """Whether a file's entries are elements that ROSS saved."""
-    return isinstance(entries, dict) and any(
-        isinstance(entry, dict) and {"kxx", "cxx"} <= set(entry) for entry in entries.values()
-    )
+    return isinstance(entries, dict) and bool(_bearings(entries))
 
 
-def read(path: str | Path, load_direction: float | None = None) -> CoefficientTable:
-    """Table of the one bearing that ROSS, or `write`, saved to `path` (TOML or JSON).
+def _bearings(entries: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Bearings (and seals) of a file, by the names of their tables."""
+    return {
+        name: entry
+        for name, entry in entries.items()
+        if isinstance(entry, dict) and set(entry) >= _BEARING_KEYS
+    }
+
+
+def read(
+    path: str | Path, load_direction: float | None = None, bearing: str | None = None
+) -> CoefficientTable:
+    """Table of a bearing that ROSS, or `write`, saved to `path` (TOML or JSON).
 
     Parameters
     ----------
@@ -182,21 +223,59 @@ def read(path: str | Path, load_direction: float | None = None) -> CoefficientTa
     load_direction : float, optional
         Where the static load points in the frame of ROSS [rad], from x towards y; by default what
         the file says, and if it says nothing along -y.
+    bearing : str, optional
+        Its tag, or the name of its table, in a file of several.
 
     Raises
     ------
     TableError
-        Not such a file, several bearings, no speeds, coefficients that are no numbers, or a file
-        that says another `load_direction`.
+        Not such a file, several bearings and none chosen, coefficients over the frequency of the
+        whirl, or that are no numbers, or a file that says another `load_direction`.
     """
     source = Path(path)
     entries = _entries(source)
     if not _is_ross(entries):
         raise TableError("not a bearing that ROSS saved: no entry has kxx and cxx", source=source)
-    bearings = [e for e in entries.values() if isinstance(e, dict) and {"kxx", "cxx"} <= set(e)]
-    if len(bearings) > 1:
-        raise TableError("holds several bearings; save each to a file of its own", source=source)
-    return _table(bearings[0], _direction(entries, load_direction, source), source)
+    chosen = _chosen(_bearings(entries), bearing, source)
+    ross3 = "interpolation" in chosen or str(entries.get("ross_version", "2"))[:1] >= "3"
+    return _table(chosen, ross3, _direction(entries, load_direction, source), source)
+
+
+def _chosen(found: dict[str, dict[str, Any]], wanted: str | None, source: Path) -> dict[str, Any]:
+    """Bearing of that tag or table name; the only one where none is named."""
+    tags = [
+        str(entry.get("tag") or name.partition("_")[2] or name) for name, entry in found.items()
+    ]
+    called = tags if len(set(tags)) == len(tags) else list(found)
+    listed = ", ".join(
+        f"{name} (node {entry.get('n', '?')})"
+        for name, entry in list(zip(called, found.values(), strict=True))[:30]
+    )
+    if wanted is None and len(found) == 1:
+        return next(iter(found.values()))
+    if wanted is None:
+        same = all(_numbers(one) == _numbers(next(iter(found.values()))) for one in found.values())
+        raise TableError(
+            f"holds several bearings: {listed}; choose one with --bearing NAME"
+            + (" (their coefficients are the same)" if same else ""),
+            source=source, key="--bearing",
+        )  # fmt: skip
+    matches = [
+        entry
+        for name, tag, entry in zip(found, tags, found.values(), strict=True)
+        if wanted in (name, tag)
+    ]
+    if len(matches) != 1:
+        message = "no bearing has that name" if not matches else "several bearings have that name"
+        raise TableError(
+            f"{message}; the file holds {listed}", source=source, key="--bearing", value=wanted
+        )
+    return matches[0]
+
+
+def _numbers(entry: dict[str, Any]) -> dict[str, Any]:
+    """What makes two bearings the same."""
+    return {name: value for name, value in entry.items() if name not in ("n", "tag", "color")}
 
 
 def _direction(entries: dict[str, Any], given: float | None, source: Path) -> float:
@@ -217,51 +296,91 @@ def _direction(entries: dict[str, Any], given: float | None, source: Path) -> fl
 
 
 def _entries(source: Path) -> Any:
+    suffix = source.suffix.lower()
+    data = read_bytes(source, _MAX_BYTES.get(suffix, _MAX_BYTES[".toml"]), TableError)
     try:
-        if source.stat().st_size > _MAX_BYTES:
-            raise TableError("too large to be a bearing", source=source)
-        text = source.read_text(encoding="utf-8-sig")
-        return json.loads(text) if source.suffix.lower() == ".json" else tomllib.loads(text)
-    except OSError as error:
-        raise TableError(f"cannot be read: {error.strerror}", source=source) from None
+        text = data.decode("utf-8-sig")
+        return json.loads(text) if suffix == ".json" else tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise TableError(f"not a TOML or JSON file: {error}", source=source) from None
 
 
-def _table(bearing: dict[str, Any], load_direction: float, source: Path) -> CoefficientTable:
-    from ..bearing.table_data import build
+def _table(
+    bearing: dict[str, Any], ross3: bool, load_direction: float, source: Path
+) -> CoefficientTable:
+    from ..bearing.table_data import CONSTANT, CONSTANT_SPEEDS, NOTES, build, without_standstill
 
-    if bearing.get("frequency") is None:
-        raise TableError(
-            "has constant coefficients; give their speed in rad/s as a list frequency = [...]",
-            source=source,
-            key="frequency",
+    axis = _axis(bearing, ross3, source)
+    notes = []
+    if axis == "frequency":
+        notes.append("frequency is taken for the shaft's speed, as in ROSS 2")
+    if bearing.get("n_link") is not None:
+        notes.append(
+            f"the bearing stands on node {bearing['n_link']}: what carries that is left out"
         )
-    speeds = _column(bearing, "frequency", None, source)
-    if not speeds.size or speeds[0] <= 0.0 or np.any(np.diff(speeds) <= 0.0):
-        raise TableError("must be above 0 and ascend", source=source, key="frequency")
+    speeds = np.array(CONSTANT_SPEEDS) if axis is None else _column(bearing, axis, None, source)
+    if not speeds.size or speeds[0] < 0.0 or np.any(np.diff(speeds) <= 0.0):
+        raise TableError("must be 0 or more and ascend", source=source, key=axis)
     # As in ROSS: the second direct coefficient defaults to the first, the cross ones to zero.
     given = {"kyy": bearing["kxx"], "cyy": bearing["cxx"]} | bearing
-    columns = [_column(given, name, speeds.size, source) for name in COEFFICIENTS]
-    inertia = [n for n in ("mxx", "mxy", "myx", "myy") if np.any(np.asarray(given.get(n, 0.0)))]
-    if inertia:
-        raise TableError("added mass is not known here", source=source, key=inertia[0])
-    values = np.stack(columns, axis=-1).reshape(1, 1, -1, 2, 2, 2)
-    turned = from_ross(values, load_direction).reshape(1, 1, -1, 8)
+    count = 1 if axis is None else speeds.size
+    columns = [_column(given, name, count, source) for name in (*COEFFICIENTS, *_INERTIA)]
+    for name, column in zip(_INERTIA, columns[8:], strict=True):
+        if np.any(column):
+            raise TableError(
+                "added mass is not known here: K and C alone would give another verdict",
+                source=source, key=name, value=float(column[column != 0.0][0]),
+            )  # fmt: skip
+    values = np.stack(np.broadcast_arrays(*columns[:8], speeds)[:8], axis=-1)
+    turned = from_ross(values.reshape(1, 1, -1, 2, 2, 2), load_direction).reshape(1, 1, -1, 8)
     variables: dict[str, Any] = {n: turned[..., i] for i, n in enumerate(COEFFICIENTS)}
     variables["status"] = np.full(turned.shape[:-1], "converged", dtype=object)
     coordinates = {"thermal_model": ["given"], "radial_clearance": [np.nan], "speed": speeds}
-    title = f"Coefficients from {source.name}"
-    return CoefficientTable(build(coordinates, variables, {"title": title}))
+    attributes: dict[str, Any] = {"title": f"Coefficients from {source.name}"}
+    attributes |= {CONSTANT: 1} if axis is None else {}
+    attributes |= {NOTES: "\n".join(notes)} if notes else {}
+    found = build(coordinates, variables, attributes)
+    return CoefficientTable(without_standstill(found, source))
+
+
+def _axis(bearing: dict[str, Any], ross3: bool, source: Path) -> str | None:
+    """Key of the shaft's speeds; None for constant coefficients.
+
+    Raises
+    ------
+    TableError
+        The coefficients depend on the frequency of the whirl.
+    """
+    speed, frequency = (bearing.get(name) is not None for name in ("speed", "frequency"))
+    if speed and frequency:
+        raise TableError(
+            "a table over speed and whirl frequency (ROSS 3); coefficients here depend on the "
+            "speed alone: save those for one whirl frequency, such as the shaft's, over speed",
+            source=source, key="speed, frequency",
+        )  # fmt: skip
+    if frequency and ross3:
+        raise TableError(
+            "is the frequency of the whirl (ROSS 3), not the shaft's speed; if the coefficients "
+            "hold for a whirl at the shaft's speed, rename the key to speed",
+            source=source, key="frequency",
+        )  # fmt: skip
+    return "speed" if speed else "frequency" if frequency else None
 
 
 def _column(
     bearing: dict[str, Any], name: str, count: int | None, source: Path
 ) -> NDArray[np.float64]:
+    """Numbers of a key: `count`, or one that holds for all."""
     value = bearing.get(name, 0.0)
-    numbers = value if isinstance(value, list) else [value] * (count or 1)
-    if count is not None and len(numbers) != count:
-        raise TableError(f"has {len(numbers)} values for {count} speeds", source=source, key=name)
-    if not all(isinstance(n, (int, float)) and abs(n) < 1e300 for n in numbers):
-        raise TableError("must be finite numbers", source=source, key=name)
+    numbers = value if isinstance(value, list) else [value]
+    if count is not None and len(numbers) not in (1, count):
+        speeds = f"{count} speeds" if count > 1 else "one speed, or none"
+        raise TableError(f"has {len(numbers)} values for {speeds}", source=source, key=name)
+    for number in numbers:
+        if isinstance(number, bool) or not isinstance(number, (int, float)):
+            raise TableError("must be finite numbers", source=source, key=name)
+        if not abs(number) <= LARGEST:
+            raise TableError(
+                f"must be finite numbers, at most {LARGEST:g}", source=source, key=name
+            )
     return np.array(numbers, dtype=float)

@@ -121,8 +121,9 @@ WEIGHT_FILE = """\
 # Coefficients from made.csv
 # thermal model given
 # Read it with: bearing = ross.BearingElement.load("b.ross.toml"), then set bearing.n
-# (the node; the file says 0), and another bearing.tag for each use. Speeds (frequency) in
-# rad/s, the shaft's.
+# (the node; the file says 0), and another bearing.tag for each use.
+# For ROSS 3 (speed: the shaft's, in rad/s). ROSS 2 refuses this file; rotorsim export
+# --to ross2 writes one for it.
 # Frame of ROSS: z along the shaft, the shaft turning from x to y, y up; the static load is
 # the weight, along -y.
 # K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;
@@ -135,7 +136,8 @@ WEIGHT_FILE = """\
 ["BearingElement_b"]
 n = 0
 tag = "b"
-frequency = [100.0, 200.0]
+interpolation = "pchip"
+speed = [100.0, 200.0]
 kxx = [150000000.0, 125000000.0]
 kxy = [35000000.0, 100000000.0]
 kyx = [-300000000.0, -325000000.0]
@@ -298,7 +300,7 @@ def test_the_exported_bearing_gives_the_campbell_diagram_of_ross(tmp_path):
     (path,) = write_table(source, "ross", tmp_path, "b")
     entry = ross_entries(path)
     as_they_stand = tmp_path / "turned.csv"
-    columns = [entry["frequency"], *(entry[name] for name in COEFFICIENTS)]
+    columns = [entry["speed"], *(entry[name] for name in COEFFICIENTS)]
     units = ["rad/s", *["N/m"] * 4, *["N s/m"] * 4]
     head = ",".join(f"{n} [{u}]" for n, u in zip(("speed", *COEFFICIENTS), units, strict=True))
     rows = [",".join(map(repr, row)) for row in zip(*columns, strict=True)]
@@ -383,7 +385,7 @@ def test_points_that_did_not_converge_are_left_out_and_named(tmp_path):
         text = path.read_text(encoding="utf-8")
         assert "Left out, not converged, rpm: 3819.72" in text
         assert "nan" not in text
-    assert ross_entries(tmp_path / "b.ross.toml")["frequency"] == [100.0, 250.0, 700.0]
+    assert ross_entries(tmp_path / "b.ross.toml")["speed"] == [100.0, 250.0, 700.0]
     none = CoefficientTable.from_points([points[2]])
     with pytest.raises(TableError, match="no point of the table converged"):
         write_table(none, "ross", tmp_path, "none")
@@ -416,10 +418,11 @@ def test_bearings_of_ross_with_defaults(tmp_path):
         ("b.json", "[1]", "not a bearing that ROSS saved"),
         ("b.toml", 'title = "x"', "not a bearing that ROSS saved"),
         ("b.json", {"a": GOOD, "b": GOOD}, "several bearings"),
-        ("b.json", {"a": GOOD | {"frequency": None}}, "frequency: has constant"),
-        ("b.json", {"a": GOOD | {"frequency": [2.0, 1.0]}}, "frequency: must be above 0 and"),
-        ("b.json", {"a": GOOD | {"frequency": [0.0, 1.0]}}, "frequency: must be above 0 and"),
-        ("b.json", {"a": GOOD | {"kyx": [1.0]}}, "kyx: has 1 values for 2 speeds"),
+        ("b.json", {"a": GOOD | {"frequency": None}}, "kxx: has 2 values for one speed, or none"),
+        ("b.json", {"a": GOOD | {"frequency": [2.0, 1.0]}}, "frequency: must be 0 or more and"),
+        ("b.json", {"a": GOOD | {"frequency": [-1.0, 1.0]}}, "frequency: must be 0 or more and"),
+        ("b.json", {"a": GOOD | {"frequency": [1.0, 1e7]}}, "speed: speeds must be 1e-06 to"),
+        ("b.json", {"a": GOOD | {"kyx": [1.0] * 3}}, "kyx: has 3 values for 2 speeds"),
         ("b.json", {"a": GOOD | {"cxy": ["x", 1.0]}}, "cxy: must be finite numbers"),
         ("b.json", {"a": GOOD | {"cxy": [float("nan"), 1.0]}}, "cxy: must be finite numbers"),
         ("b.json", {"a": GOOD | {"mxx": [1.0, 1.0]}}, "mxx: added mass"),
@@ -435,7 +438,7 @@ def test_foreign_files_are_refused_with_a_reason(name, contents, message, tmp_pa
 
 
 def test_unknown_formats_and_missing_files_are_refused(one, tmp_path):
-    with pytest.raises(TableError, match="must be one of ross, csv, mat"):
+    with pytest.raises(TableError, match="must be one of ross, ross2, csv, mat"):
         write_table(one, "xlsx", tmp_path, "b")
     with pytest.raises(TableError, match="no such file"):
         read_table(tmp_path / "none.nc")

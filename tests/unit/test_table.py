@@ -324,13 +324,21 @@ def test_csv_round_trip(table, tmp_path):
         (HEADER, [ROWS[0], "2000,2,2,x,4,5,6,7,8"], "row 4, column kyx: not a number"),
         (HEADER, ["2000,2,2,3,4,5,6,7,8,9"], "decimals are written with a point"),
         (HEADER, ['2000,2,"2,5",3,4,5,6,7,8'], "not a number; write decimals with a point"),
-        (HEADER.replace(",", ";"), ["2000;2,5;2;3;4;5;6;7;8"], "separated by semicolons; separate"),
-        (HEADER.replace(",", "\t"), ["2000\t2\t2\t3\t4\t5\t6\t7\t8"], "separated by tabs"),
+        (
+            HEADER.replace(",", ";"),
+            ["2000;2,500;2;3;4;5;6;7;8"],
+            "may stand for decimals or between",
+        ),
+        (
+            HEADER.replace(",", ";"),
+            ["2000;2,5;2.5;3;4;5;6;7;8"],
+            "with a point here and with a comma",
+        ),
         (HEADER, [ROWS[0], ROWS[2], ROWS[1]], r"speed: .*3000 stands before; .*'2000'"),
         (HEADER, [ROWS[0], ROWS[2], ROWS[1]], "row 5, column speed: speeds must ascend"),
         (HEADER, [ROWS[0], ROWS[0]], "row 4, column speed: speeds must ascend"),
         (HEADER, ["1000,2,2"], "row 3: has 3 fields"),
-        (HEADER, ["-1000,1,2,-3,4,5,6,7,8"], "row 3, column speed: must be above 0"),
+        (HEADER, ["-1000,1,2,-3,4,5,6,7,8"], "row 3, column speed: must not be below 0"),
         (HEADER, [], "at least one row"),
         (HEADER.replace(",kxy [MN/m]", ""), ["1000,1,-3,4,5,6,7,8"], "columns are missing: kxy"),
         (HEADER.replace("kxx [MN/m]", "kxx"), ROWS, "column kxx needs a unit.*MN/m"),
@@ -347,7 +355,6 @@ def test_bad_csv_names_row_and_column(tmp_path, header, rows, message):
 @pytest.mark.parametrize(
     ("encoding", "message"),
     [
-        ("utf-16", "UTF-16; save it as UTF-8"),
         ("utf-16-be", "UTF-8; byte"),
         ("latin-1", "byte 0xe9 in line 1"),
     ],
@@ -358,6 +365,18 @@ def test_csv_in_another_encoding_is_named(tmp_path, encoding, message):
     path.write_text(text, encoding=encoding)
     with pytest.raises(TableError, match=message):
         CoefficientTable.from_csv(path)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+@pytest.mark.parametrize("separator", [";", "\t", "|"])
+def test_csv_with_another_separator_and_decimal_commas(tmp_path, encoding, separator):
+    path = tmp_path / "t.csv"
+    rows = [row.replace(",", separator).replace("4", "4,25") for row in ROWS]
+    lines = ["sep=;"] if separator == ";" else []
+    text = "\n".join([*lines, HEADER.replace(",", separator), *rows])
+    path.write_text(text, encoding=encoding)
+    table = CoefficientTable.from_csv(path)
+    assert np.allclose(table.stiffness[0, 0, 1], [[2e6, 2e6], [-3e6, 4.25e6]], rtol=1e-15)
 
 
 def test_csv_groups_need_the_same_speeds(tmp_path):
