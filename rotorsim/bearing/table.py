@@ -100,7 +100,9 @@ class CoefficientTable:
     @classmethod
     def from_csv(cls, path: str | Path) -> CoefficientTable:
         """Read speed, K and C from a CSV file (see `rotorsim.bearing.delimited`)."""
-        return cls(delimited.read(path))
+        dataset = delimited.read(path)
+        assembly.check(dataset, source=path)
+        return cls(dataset)
 
     def save(self, path: str | Path) -> Path:
         """Write netCDF 4 with provenance; an old file is replaced only by a complete new one."""

@@ -11,8 +11,8 @@ import typer
 from ..errors import InputError
 from ..file_kinds import HEAD, KNOWN_SUFFIXES, FileKind, recognise, sentence
 from ..shipped import shipped_scenarios
-from .inputs import check_file, check_folder
-from .options import TableArgument
+from .inputs import check_file, check_folder, given_table
+from .options import BearingOption, TableArgument
 from .output import DONE, Output, as_typed
 
 
@@ -28,6 +28,7 @@ class ExportFormat(StrEnum):
     """Formats that `export` can write; `rotorsim.files.FORMATS` says how."""
 
     ROSS = "ross"
+    ROSS2 = "ross2"
     CSV = "csv"
     MAT = "mat"
     TXT = "txt"
@@ -69,7 +70,8 @@ def load_directions(
     from ..units import parse_quantity
 
     angle = parse_quantity(text, "angle", key="--load-direction", example="-90 deg")
-    reads, writes = table.suffix.lower() in (".toml", ".json"), ExportFormat.ROSS in kinds
+    reads = table.suffix.lower() in (".toml", ".json")
+    writes = not {ExportFormat.ROSS, ExportFormat.ROSS2}.isdisjoint(kinds)
     if not reads and not writes:
         message = "has no use: only the frame of ROSS is turned; give ross to --to"
         raise InputError(message, key="--load-direction", value=text)
@@ -182,7 +184,7 @@ def export(
         typer.Option(
             "--to",
             metavar="FORMATS",
-            help="Some of ross, csv, mat, txt, nc, with commas between.",
+            help="Some of ross, ross2, csv, mat, txt, nc, with commas between.",
             show_default=False,
         ),
     ],
@@ -201,20 +203,21 @@ def export(
             show_default="-90 deg, the weight",
         ),
     ] = None,
+    bearing: BearingOption = None,
 ) -> int:
     """Write a table for other programs, or (nc) another program's table for this one.
 
-    ross: a bearing for ross.BearingElement.load; csv and txt: columns of numbers; mat: MATLAB.
-    Every file states its frame and signs.
+    ross: a bearing for ross.BearingElement.load of ROSS 3, ross2: of ROSS 2; csv and txt: columns
+    of numbers; mat: MATLAB. Every file states its frame and signs.
 
     Example: rotorsim export coefficients/dal.nc --to ross,csv
     """
-    from ..files.formats import FORMATS, read_table, write_table
+    from ..files.formats import FORMATS, write_table
 
     kinds = export_formats(to)
     read_at, written_at = load_directions(load_direction, table, kinds)
-    loaded = read_table(table, load_direction=read_at)
-    name = table.stem.removesuffix(".ross")
+    loaded = given_table(output, table, bearing, read_at)
+    name = table.stem.removesuffix(".ross").removesuffix(".ross2")
     where = folder or table.parent
     check_folder(where)
     for kind in kinds:
@@ -225,7 +228,7 @@ def export(
     files = {
         kind.value: write_table(
             loaded, kind.value, where, name,
-            load_direction=written_at if kind is ExportFormat.ROSS else None,
+            load_direction=written_at if kind.value.startswith("ross") else None,
         )
         for kind in kinds
     }  # fmt: skip
@@ -244,6 +247,8 @@ def view(
     """
     from ..show.recording import open_viewer
 
+    if str(recording).startswith("-"):  # the viewer would take it for an option
+        recording = Path(".").absolute() / recording
     if recording.is_file():
         with recording.open("rb") as stream:
             head = stream.read(HEAD)

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING
 from ..errors import InputError
 
 if TYPE_CHECKING:
+    from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
     from ..model import Case
+    from .output import Output
 
 
 def wanted_cases(scenario: Scenario, clearance: str | None, model: str | None) -> list[Case]:
@@ -122,6 +124,18 @@ def check_folder(folder: Path) -> None:
         raise InputError(
             f"cannot be written to: {there}: {reason}", key="--output", value=str(folder)
         ) from None
+
+
+def given_table(
+    output: Output, path: Path, bearing: str | None = None, load_direction: float | None = None
+) -> CoefficientTable:
+    """Table at `path`; says what its reader left out or took for granted."""
+    from ..files.formats import read_table
+
+    table = read_table(path, bearing=bearing, load_direction=load_direction)
+    for text in table.notes:
+        output.note(f"{path}: {text}")
+    return table
 
 
 @contextmanager

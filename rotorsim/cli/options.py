@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -12,9 +13,18 @@ from ..shipped import shipped_file
 
 def file_or_shipped(path: Path) -> Path:
     """`path`; or where there is no such file, the shipped scenario or table of that name."""
-    return path if path.exists() else shipped_file(str(path)) or path
+    return path if os.path.lexists(path) else shipped_file(str(path)) or path
 
 
+BearingOption = Annotated[
+    str | None,
+    typer.Option(
+        "--bearing",
+        metavar="NAME",
+        help="Bearing in a file of ROSS that holds several: its tag.",
+        show_default=False,
+    ),
+]
 ScenarioArgument = Annotated[
     Path,
     typer.Argument(

@@ -11,7 +11,7 @@ import typer
 
 from ..errors import InputError
 from .film_commands import computed_table
-from .inputs import check_file, table_path
+from .inputs import check_file, given_table, table_path
 from .options import ModelOption, ScenarioArgument, WorkersOption
 from .output import DONE, INCOMPLETE, Output, as_typed
 from .progress import late_progress, progress_bar
@@ -116,7 +116,6 @@ def _coefficients(
     output: Output, loaded: Scenario, scenario: Path, table: Path | None, workers: int | None
 ) -> CoefficientTable | None:
     """Table for linear coefficients; a nonlinear film needs none."""
-    from ..files.formats import read_table
     from ..files.scenario import OrbitForce
     from ..study.provenance import differences
 
@@ -127,7 +126,7 @@ def _coefficients(
             )
         return None
     if table is not None:
-        found = read_table(table)
+        found = given_table(output, table)
         differing = differences(loaded, found)
         if differing:
             output.warn(f"{table} was computed for another scenario: {', '.join(differing)} differ")

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
+from ..file_kinds import FileKind, kind_of, sentence
 from .film_commands import computed_table
-from .inputs import cluster, table_path, wanted_mass
-from .options import ModelOption, SchedulerOption, WorkersOption
+from .inputs import cluster, given_table, table_path, wanted_mass
+from .options import BearingOption, ModelOption, SchedulerOption, WorkersOption
 from .output import DONE, INCOMPLETE, Output
 from .stability_options import (
     AXES,
@@ -31,6 +32,7 @@ from .stability_options import (
     SamplesOption,
     ShaftStiffnessOption,
     SourceArgument,
+    SpeedsOption,
     ToleranceOption,
     TolerancesOption,
     XOption,
@@ -76,6 +78,8 @@ def stability(
     samples: SamplesOption = None,
     mesh: MeshOption = Mesh.SCENARIO,
     model: ModelOption = None,
+    bearing: BearingOption = None,
+    speeds: SpeedsOption = None,
     folder: FolderOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
@@ -101,11 +105,11 @@ def stability(
         if rotor is not None or shaft_stiffness is not None:
             raise InputError("maps are for a rigid rotor: give --mass", key="--rotor")
         held |= {} if given is None else {"mass": given}
-        work = _Work(output, model, mesh, cells, folder, workers, scheduler)
+        work = _Work(output, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
         return _show_map(work, source, axes, held)
     if x_values or y_values:
         raise InputError("goes with --x and --y", key="--x-values" if x_values else "--y-values")
-    work = _Work(output, model, mesh, cells, folder, workers, scheduler)
+    work = _Work(output, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
     if tolerances or tolerance or samples:
         return _show_tolerances(work, source, held, rotor_texts, tolerance, samples)
     if held or mesh is not Mesh.SCENARIO:
@@ -121,10 +125,35 @@ class _Work:
 
     def __init__(
         self, output: Output, model: str | None, mesh: Mesh, cells: int, folder: Path | None,
-        workers: int | None, scheduler: str | None,
+        workers: int | None, scheduler: str | None, bearing: str | None, speeds: str | None,
     ) -> None:  # fmt: skip
         self.output, self.model, self.cells, self.folder = output, model, cells, folder
         self.workers, self.scheduler, self.mesh = workers, scheduler, mesh
+        self.bearing, self.speeds = bearing, speeds
+
+    def table(self, source: Path) -> CoefficientTable | None:
+        """Table at `source`; None where it is no table.
+
+        Raises
+        ------
+        InputError
+            It is neither a table nor a scenario, or not as the options say.
+        """
+        from ..files.formats import is_table
+
+        if is_table(source):
+            table = given_table(self.output, source, self.bearing)
+            if self.speeds is None:
+                return table
+            return table.with_speeds(axis_values(self.speeds, Axis.SPEED, "--speeds"))
+        kind = kind_of(source)
+        if kind not in (None, FileKind.SCENARIO):
+            message = f"{sentence(kind)}; here a table or a scenario is needed"
+            raise InputError(message, source=source)
+        for key, text in (("--bearing", self.bearing), ("--speeds", self.speeds)):
+            if text is not None:
+                raise InputError("goes with a table", key=key, value=text)
+        return None
 
     @property
     def mesh_size(self) -> MeshSize | None:
@@ -183,15 +212,14 @@ def _plane(
     work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
 ) -> tuple[Plane, str]:
     """The map and its title."""
-    from ..files.formats import is_table, read_table
     from ..files.scenario import load_scenario
     from ..study.planes import plane_of_scenario, plane_of_table
     from .progress import film_progress
 
     x, y = axes
     values = {name: found for name, found in axes.items() if found is not None}
-    if is_table(source):
-        table = read_table(source)
+    table = work.table(source)
+    if table is not None:
         table = table if work.model is None else table.select(thermal_model=work.model)
         own = _scenario_of(work.output, source, table)
         fixed = {**values, **{n: [v] for n, v in held.items() if n in ("speed", "mass")}}
@@ -229,7 +257,7 @@ def _show_tolerances(
     from ..study.tolerances import study_tolerances
     from .stability_results import study_document, study_tables
 
-    scenario, _ = _source(work.output, source)
+    scenario, _ = _source(work, source)
     if scenario is None:
         raise InputError(
             "films are solved, and this table does not say how: give the scenario in its place",
@@ -280,14 +308,15 @@ def _sample_progress(output: Output) -> Iterator[Callable[[int, int], None] | No
 
 
 def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> int:
+    from ..bearing.doubts import doubts
     from ..machine.over_speed import RigidShaft
     from ..show.stability_figures import campbell_figures
-    from ..study.stability import campbell_curves, doubts, stability_curves
+    from ..study.stability import campbell_curves, stability_curves
     from .stability_results import branches_table, curve_row, modes_table, threshold_table
     from .stability_tables import curve_table, summary_table
 
     output = work.output
-    scenario, stored = _source(output, source)
+    scenario, stored = _source(work, source)
     # Before films are solved: what is wrong with the rotor is said at once.
     rotor = wanted_rotor(scenario, *rotor_texts)
     table = _solved(work, source, scenario) if stored is None else stored
@@ -300,6 +329,7 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
         "mass": mass,
         "rotor": None if rotor is None else type(rotor).__name__,
         "curves": [curve_row(*pair) for pair in zip(curves, found, strict=True)],
+        "doubts": doubts(table) if scenario is None else [],  # coefficients from elsewhere
     }
 
     def parts() -> list:
@@ -310,7 +340,7 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
         return [*tables, threshold_table(curves, shown) if shown else summary_table(curves)]
 
     work.finish(document, campbell_figures(shown, _title(scenario, table)), parts)
-    for text in doubts(curves) if scenario is None else ():  # coefficients from elsewhere
+    for text in document["doubts"]:
         output.warn(text)
     return _report_failed(output, int((~table.converged).sum()), table.converged.size)
 
@@ -325,15 +355,14 @@ def _report_failed(output: Output, bad: int, total: int) -> int:
     return INCOMPLETE if bad else DONE
 
 
-def _source(output: Output, source: Path) -> tuple[Scenario | None, CoefficientTable | None]:
+def _source(work: _Work, source: Path) -> tuple[Scenario | None, CoefficientTable | None]:
     """Scenario at `source`, or of the table there where it says; the table, if it is one."""
-    from ..files.formats import is_table, read_table
     from ..files.scenario import load_scenario
 
-    if is_table(source):
-        table = read_table(source)
-        return _scenario_of(output, source, table), table
-    return load_scenario(source), None
+    table = work.table(source)
+    if table is None:
+        return load_scenario(source), None
+    return _scenario_of(work.output, source, table), table
 
 
 def _solved(work: _Work, source: Path, scenario: Scenario | None) -> CoefficientTable:

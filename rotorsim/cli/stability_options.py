@@ -209,6 +209,15 @@ SamplesOption = Annotated[
         min=8, max=100_000, rich_help_panel=_TOLERANCES,
     ),
 ]  # fmt: skip
+SpeedsOption = Annotated[
+    str | None,
+    typer.Option(
+        "--speeds",
+        metavar="VALUES",
+        help='For constant coefficients: a list "3000 rpm, 6000 rpm", or start, stop and count.',
+        show_default="1000 rpm : 20000 rpm : 20",
+    ),
+]
 FolderOption = Annotated[
     Path | None,
     typer.Option(

@@ -308,7 +308,14 @@ def _entries(source: Path) -> Any:
 def _table(
     bearing: dict[str, Any], ross3: bool, load_direction: float, source: Path
 ) -> CoefficientTable:
-    from ..bearing.table_data import CONSTANT, CONSTANT_SPEEDS, NOTES, build, without_standstill
+    from ..bearing.table_data import (
+        CONSTANT,
+        CONSTANT_SPEEDS,
+        NOTES,
+        build,
+        check,
+        without_standstill,
+    )
 
     axis = _axis(bearing, ross3, source)
     notes = []
@@ -339,8 +346,9 @@ def _table(
     attributes: dict[str, Any] = {"title": f"Coefficients from {source.name}"}
     attributes |= {CONSTANT: 1} if axis is None else {}
     attributes |= {NOTES: "\n".join(notes)} if notes else {}
-    found = build(coordinates, variables, attributes)
-    return CoefficientTable(without_standstill(found, source))
+    found = without_standstill(build(coordinates, variables, attributes), source)
+    check(found, source)
+    return CoefficientTable(found)
 
 
 def _axis(bearing: dict[str, Any], ross3: bool, source: Path) -> str | None:

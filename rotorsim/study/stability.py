@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -90,30 +89,6 @@ class StabilityCurve:
     def growth_rate(self) -> Array | None:
         """Largest real part of the eigenvalues, above 0 where unstable [1/s]; None: no rotor."""
         return None if self.eigenvalues is None else self.eigenvalues[:, 0].real
-
-
-PLAUSIBLE_WHIRL = (0.05, 2.0)
-"""Whirl frequency over shaft speed; films of oil whirl at about one half."""
-PLAUSIBLE_MASS = (1e-3, 1e8)
-"""Critical mass per bearing [kg]."""
-
-
-def doubts(curves: Sequence[StabilityCurve]) -> list[str]:
-    """What makes coefficients look as if read in a wrong unit or frame, a sentence each."""
-    found = []
-    for name, (low, high), words in (
-        ("whirl_frequency_ratio", PLAUSIBLE_WHIRL, "whirl frequency ratio"),
-        ("critical_mass", PLAUSIBLE_MASS, "critical mass per bearing [kg]"),
-    ):
-        values = np.concatenate([np.zeros(0), *(getattr(curve, name) for curve in curves)])
-        values = values[np.isfinite(values)]
-        if values.size and np.all((values < low) | (values > high)):
-            found.append(
-                f"check units and frame: the {words} is {values.min():.3g} to {values.max():.3g}, "
-                f"nowhere within {low:g} to {high:g} as with films of oil; units stand in the "
-                "header, x is along the load, and y 90 degrees ahead in the direction of rotation"
-            )
-    return found
 
 
 @dataclass(frozen=True)
