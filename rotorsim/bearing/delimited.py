@@ -354,7 +354,7 @@ def _checked(value: float, row: Row, name: str, cell: str, key: str, source: Pat
             "is beyond every sensible value", source=source, key=key, value=_shown(cell)
         )
     if name == "speed" and value < 0.0:
-        raise TableError("must not be below 0", source=source, key=key, value=_shown(cell))
+        raise TableError("must be above 0", source=source, key=key, value=_shown(cell))
     if name in ("radial_clearance", "load") and value <= 0.0:
         raise TableError("must be above 0", source=source, key=key, value=_shown(cell))
     return value

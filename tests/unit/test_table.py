@@ -338,7 +338,7 @@ def test_csv_round_trip(table, tmp_path):
         (HEADER, [ROWS[0], ROWS[2], ROWS[1]], "row 5, column speed: speeds must ascend"),
         (HEADER, [ROWS[0], ROWS[0]], "row 4, column speed: speeds must ascend"),
         (HEADER, ["1000,2,2"], "row 3: has 3 fields"),
-        (HEADER, ["-1000,1,2,-3,4,5,6,7,8"], "row 3, column speed: must not be below 0"),
+        (HEADER, ["-1000,1,2,-3,4,5,6,7,8"], "row 3, column speed: must be above 0"),
         (HEADER, [], "at least one row"),
         (HEADER.replace(",kxy [MN/m]", ""), ["1000,1,-3,4,5,6,7,8"], "columns are missing: kxy"),
         (HEADER.replace("kxx [MN/m]", "kxx"), ROWS, "column kxx needs a unit.*MN/m"),
