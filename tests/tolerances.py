@@ -45,5 +45,7 @@ HEAT_BALANCE = 0.005
 """Friction power against enthalpy and wall heat of a whole bearing."""
 MASS_BALANCE = 1e-8
 """Of the flow that enters."""
+FOUND_AGAIN = 1e-6
+"""Force at the position found, relative to the load."""
 SIMILARITY = 1e-9
 """Isoviscous films of one shape share one dimensionless solution."""

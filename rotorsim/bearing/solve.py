@@ -332,7 +332,7 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
         theta=mesh.theta + solution.frame,
         y=mesh.whole_y,
         z=(np.arange(layers) + 0.5) / layers,
-        film_thickness=whole(state.center_thickness),
+        film_thickness=whole(np.maximum(state.center_thickness, 0.0)),
         pressure=whole(_without_tension(solution)),
         liquid_fraction=whole(fraction),
         temperature=whole(temperature),

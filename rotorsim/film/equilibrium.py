@@ -23,6 +23,8 @@ ECCENTRICITY_LIMITS = (1e-5, 0.9995)
 """Eccentricity ratios between which an equilibrium is sought."""
 CLEARANCE_KEPT = 5e-4
 """Thinnest film, relative to the clearance, to which a step may take a journal."""
+SHORTEST_STEP = 1e-4
+"""Part of a step below which none helps."""
 
 
 @dataclass
@@ -87,8 +89,7 @@ class LoadSearch:
         step = scales * _newton_step(stiffness, missing, self.clearance)
         following = self.allowed(state.displacement, state.displacement + step)
         pinned = state.min_thickness <= 2.0 * CLEARANCE_KEPT * self.clearance
-        stays = bool(np.array_equal(following, state.displacement))
-        self.unreachable = stays or (pinned and off > 1e-3)
+        self.unreachable = pinned and off > 1e-3
         return following, off
 
     def allowed(self, old: Array, new: Array) -> Array:
@@ -106,6 +107,26 @@ class LoadSearch:
         if scale <= 1e-4:
             return old
         return new if scale == 1.0 else old + scale * step
+
+
+@dataclass
+class Backtracking:
+    """Shortens steps until the residual falls: Newton's method may circle at kinks of the force."""
+
+    _best: float = math.inf
+    _start: Array | None = None
+    _target: Array | None = None
+    _share: float = 1.0
+
+    def __call__(self, old: Array, off: float, new: Array) -> Array | None:
+        """Return where to go on from; None where no part of the best step reduces the residual."""
+        if self._start is None or self._target is None or off < self._best:
+            self._best, self._start, self._target, self._share = off, old, new, 1.0
+            return new
+        self._share *= 0.5
+        if self._share < SHORTEST_STEP:
+            return None
+        return self._start + self._share * (self._target - self._start)
 
 
 @dataclass

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..model import Bearing, FilmSettings, Inception
+from ..model import Bearing, FilmSettings, Groove, Inception
 from ..model.bearing import angle_between
 from .geometry import bore_offset
 
@@ -44,7 +44,7 @@ class FilmMesh:
         True where p = 0 and fresh film begin at the cell's first face (``max_film``).
     region : (n,) int array
         Number of the stretch of film a column belongs to; stretches end at slots, at joints of
-        lobes and at full-length grooves.
+        lobes and at grooves.
     radius : float
         Journal radius [m].
     """
@@ -123,14 +123,15 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
     )
 
 
+def _edges(bearing: Bearing) -> list[float]:
+    """Angles at which a groove or a lobe begins or ends [rad]; the grooves' first."""
+    edges = [edge for groove in bearing.grooves for edge in groove_edges(groove)]
+    return edges + [e for arc in bearing.arcs if arc.preload > 0.0 for e in (arc.start, arc.end)]
+
+
 def _breakpoints(bearing: Bearing) -> tuple[float, list[float]]:
     """First angle of the mesh and all angles in one turn from it where a face must lie."""
-    edges: list[float] = []
-    for groove in bearing.grooves:
-        edges += [groove.center - groove.extent / 2.0, groove.center + groove.extent / 2.0]
-    for arc in bearing.arcs:
-        if arc.preload > 0.0:
-            edges += [arc.start, arc.end]
+    edges = _edges(bearing)
     if not edges:
         return -math.pi, [-math.pi, math.pi]
     # Begin behind the groove that lies nearest to pi from the load: there a film starts.
@@ -192,11 +193,22 @@ def mid_thickness(bearing: Bearing, theta: Array, position: tuple[float, float])
         - position[1] * np.sin(theta)
         + bore_offset(bearing, theta)
     )
-    open_ = np.zeros(theta.shape, dtype=bool)
+    open_ = in_full_groove(bearing, theta)
+    return np.where(open_, np.maximum(h, h[~open_].min()), h) if open_.any() else h
+
+
+def groove_edges(groove: Groove) -> tuple[float, float]:
+    """Angles at which a groove begins and ends [rad]."""
+    return groove.center - groove.extent / 2.0, groove.center + groove.extent / 2.0
+
+
+def in_full_groove(bearing: Bearing, theta: Array) -> NDArray[np.bool_]:
+    """Which angles lie inside a full-length groove."""
+    inside = np.zeros(theta.shape, dtype=bool)
     for groove in bearing.grooves:
         if bearing.spans_length(groove):
-            open_ |= np.abs(angle_between(theta, groove.center)) < groove.extent / 2.0
-    return np.where(open_, np.maximum(h, h[~open_].min()), h) if open_.any() else h
+            inside |= np.abs(angle_between(theta, groove.center)) < groove.extent / 2.0
+    return inside
 
 
 def _film_weight(bearing: Bearing, breaks: list[float], shares: Array) -> Array:
@@ -253,18 +265,16 @@ def _supply_cells(
 
 
 def _joints(bearing: Bearing, theta_faces: Array) -> NDArray[np.bool_]:
-    """Columns at whose first face one lobe ends and the next begins."""
+    """Columns at whose first face a lobe or a groove begins or ends."""
     first = theta_faces[:-1]
     joint = np.zeros(first.size, dtype=bool)
-    for arc in bearing.arcs:
-        if arc.preload > 0.0:
-            for edge in (arc.start, arc.end):
-                joint |= np.abs(angle_between(first, edge)) < 1e-6
+    for edge in _edges(bearing):
+        joint |= np.abs(angle_between(first, edge)) < 1e-6
     return joint
 
 
 def _regions(supply: NDArray[np.int64], begins: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """Stretches of film between slots, joints and full-length grooves; -1 in such grooves."""
+    """Stretches of film between slots, joints and grooves; -1 in full-length grooves."""
     blocked = np.asarray((supply >= 0).all(axis=1), dtype=bool)
     region = np.full(blocked.size, -1, dtype=np.int64)
     current = -1

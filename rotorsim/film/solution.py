@@ -13,8 +13,15 @@ from numpy.typing import NDArray
 from ..model import Bearing, Case, EccentricityTarget, LoadTarget, ThermalModel
 from ..status import SolveStatus
 from .banded import NoFilmError, SingularFilmError
-from .equilibrium import ECCENTRICITY_LIMITS, AttitudeSearch, LoadSearch, PlainSearch
-from .first_position import first_positions
+from .equilibrium import (
+    CLEARANCE_KEPT,
+    ECCENTRICITY_LIMITS,
+    AttitudeSearch,
+    Backtracking,
+    LoadSearch,
+    PlainSearch,
+)
+from .first_position import ForceField, balances_somewhere, first_positions
 from .heat import Heat
 from .layers import isoviscous_layers
 from .mesh import mid_thickness
@@ -33,6 +40,8 @@ Search = PlainSearch | LoadSearch | AttitudeSearch
 FORCE_TOLERANCE = 1e-8
 """Relative force residual at which the position counts as found."""
 MAX_POSITION_STEPS = 60
+PATIENCE = 12
+"""Steps after which each must reduce the force residual."""
 FRAME_TOLERANCE = 1e-3
 """Angle [rad] between a tilted plain film's frame and its line of centres."""
 MAX_MESHES = 8
@@ -124,7 +133,8 @@ def solve_film(case: Case, speed: float, *, initial: WarmStart | None = None) ->
 def _from_elsewhere(case: Case, speed: float, failed: FilmSolution) -> FilmSolution:
     """Solve again from positions all over the clearance; `failed` if none leads to the load."""
     isothermal = replace(case, thermal=replace(case.thermal, model=ThermalModel.ISOTHERMAL))
-    positions = first_positions(case, speed)
+    field = ForceField.of(case, speed)
+    positions = first_positions(field)
     for position in positions:
         warm = WarmStart(position, None, failed.state.solution.full[:0])
         with suppress(NoFilmError, SingularFilmError):
@@ -133,13 +143,29 @@ def _from_elsewhere(case: Case, speed: float, failed: FilmSolution) -> FilmSolut
                 if failed.thermal is None:
                     return solution
                 return _solve_general(case, speed, solution.warm_start)
-    if positions and failed.status is SolveStatus.STARVED:
-        message = (
-            "the film carries something, but at no journal position tried does its force point "
-            "along the load: a groove under the load line leaves no film there"
-        )
-        return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=message)
-    return failed
+    if not positions or not isinstance(case.target, LoadTarget):
+        return failed
+    if balances_somewhere(field, case.target.load) is not False:
+        return replace(failed, status=SolveStatus.NOT_CONVERGED, message=_NOT_FOUND)
+    return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=_no_position(failed, case))
+
+
+_NOT_FOUND = (
+    "some journal position should carry the load, but none was found: the film's force jumps "
+    'nearby, or the mesh is too coarse. Try inception = "free", a finer mesh, or another load'
+)
+
+
+def _no_position(failed: FilmSolution, case: Case) -> str:
+    """Say why no position carries the load, and what to try."""
+    thinnest = CLEARANCE_KEPT * case.bearing.radial_clearance
+    carried = float(np.hypot(*failed.state.force))
+    return (
+        "no journal position within the clearance carries the load: wherever the journal goes, it "
+        f"comes within {thinnest * 1e6:.3g} um of the bore before the film balances it (the film "
+        f"carries {carried:.4g} N at the last position tried). A heavier load needs more speed, "
+        "viscosity or size; a groove or a joint under the load line, or misalignment, leaves less"
+    )
 
 
 def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
@@ -334,14 +360,14 @@ def _iterate_isothermal(
     viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
     layers = isoviscous_layers(problem.mesh.shape, viscosity)
     full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
-    off, step, stuck = 0.0, 0, 0
+    off, step, stuck, backtracking = 0.0, 0, 0, Backtracking()
     while True:
         step += 1
         state = film_state(problem, displacement, layers, start=full)
         full = state.solution.full
         if search is None:
             return _Iterate(state, None, state.solution.converged, state.solution.steps, 0.0)
-        displacement, off = search(state)
+        following, off = search(state)
         stuck = stuck + 1 if search.unreachable else 0
         if proceed is not None and off < ROUGH_TOLERANCE:
             if not proceed(state.displacement):
@@ -349,6 +375,11 @@ def _iterate_isothermal(
             proceed = None
         if off < FORCE_TOLERANCE or stuck >= 4 or step == MAX_POSITION_STEPS:
             break
+        if step >= PATIENCE:
+            following = backtracking(displacement, off, following)
+        if following is None or np.array_equal(following, displacement):
+            break
+        displacement = following
     done = off < FORCE_TOLERANCE and state.solution.converged
     return _Iterate(state, None, done, step, off)
 
@@ -366,7 +397,7 @@ def _conclude(
             if film.state.operator.fixed.any()
             else 'A mass-conserving film needs a supply: a groove, or inception = "max_film"'
         )
-    elif search is not None and search.unreachable:
+    elif search is not None and search.unreachable and not film.converged:
         status = SolveStatus.NO_EQUILIBRIUM
         message = (
             "no journal position within the clearance carries the load (eccentricity ratios from "

@@ -54,7 +54,8 @@ bores = st.sampled_from(sorted(BORES))
 
 def solve(case, speed: float = 100.0) -> OperatingPoint:
     point, _ = solve_case(case, speed)
-    assert point.converged, point.message
+    # Beyond 400 MPa the numbers are the model's own, and no bearing's.
+    assert point.status in (SolveStatus.CONVERGED, SolveStatus.OUT_OF_RANGE), point.message
     return point
 
 

@@ -30,7 +30,7 @@ class Reynolds(ConnectedFilm):
     """The film ruptures where both the pressure and its gradient vanish.
 
     With `region` given, each line along the film keeps one full stretch per region besides those
-    fed by a groove under pressure: a ruptured film then stays ruptured up to the next inception.
+    fed by a groove: a ruptured film then stays ruptured up to the next inception.
     Thermal films need it, since the derivative of F1/F0 could otherwise re-form film inside the
     ruptured sector.
     """
@@ -204,8 +204,8 @@ def _update_set(conductance, interior, source, pressure, full, allowed, toleranc
 def _one_stretch(pressure, fixed, joined, region, allowed):
     """Forbid, on each line and in each region, full stretches other than the one with the peak.
 
-    A stretch that touches a groove under pressure is fed by it and stays, and so does one that
-    goes on into the next lobe.
+    A stretch that begins at a groove, or touches one under pressure, is fed by it and stays, and so
+    does one that goes on into the next lobe.
     """
     n, m = pressure.shape
     first = 0
@@ -254,7 +254,7 @@ def _keep_peak(pressure, fixed, joined, allowed, start, length, j):
         first, last = s == 0, end == length
         fed = fed or (first and joined[i, j] and pressure[before, j] > 0.0)
         fed = fed or (last and joined[behind, j] and pressure[behind, j] > 0.0)
-        fed = fed or (fixed[before, j] and pressure[before, j] > 0.0)
+        fed = fed or fixed[before, j]
         fed = fed or (fixed[behind, j] and pressure[behind, j] > 0.0)
         if not fed:
             for t in range(s, end):
