@@ -112,7 +112,8 @@ def initial_growth(orbit: Orbit) -> Growth | None:
         if orbit.forced:
             return None  # what is forced cannot be told from what is free
         away = np.hypot(orbit.x - orbit.equilibrium[0], orbit.y - orbit.equilibrium[1])
-        large = np.flatnonzero(away > SMALL_MOTION * orbit.radial_clearance)
+        # A run that begins right at the limit counts, whatever the rounding of its equilibrium.
+        large = np.flatnonzero(away > (1.0 + 1e-6) * SMALL_MOTION * orbit.radial_clearance)
         part = orbit.part(0, int(large[0]) if large.size else None)
         if part.t.size < _LEAST_REVOLUTIONS * orbit.samples_per_revolution:
             return None
