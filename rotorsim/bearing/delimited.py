@@ -31,12 +31,14 @@ from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
 from ..status import SolveStatus
 from ..units import parse_unit
 from .table_data import (
+    ATTRIBUTES,
     COEFFICIENTS,
     CONSTANT,
     CONSTANT_SPEEDS,
     CONVENTIONS,
     DIMENSIONS,
     FASTEST,
+    FULL_COEFFICIENTS,
     LARGEST,
     NOTES,
     build,
@@ -459,6 +461,10 @@ def write(dataset: xr.Dataset, path: str | Path) -> Path:
     header = ["thermal_model", *(["radial_clearance [m]"] if with_clearance else [])]
     header += [*(["speed [rad/s]"] if with_speed else []), "status"]
     header += [f"{n} [{'N' if n == 'load' else 'N/m' if n[0] == 'k' else 'N s/m'}]" for n in names]
+    full = [n for n in ("moment_x", "moment_y", *FULL_COEFFICIENTS) if n in single]
+    if FULL_COEFFICIENTS[0] in full:
+        names += full
+        header += [f"{n} [{ATTRIBUTES[n][0].replace(' m-1', '/m')}]" for n in full]
     stream = io.StringIO()
     stream.writelines(f"# {line}\n" for line in CONVENTIONS)
     writer = csv.writer(stream, lineterminator="\n")

@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from ..film.geometry import ROTATIONS, TRANSLATIONS
 from ..film.linearization import DynamicStiffness, linearize
 from ..film.solution import FilmSolution
 from ..status import Stability
-from .operating_point import FrequencyCoefficients
+from .operating_point import FrequencyCoefficients, FullCoefficients
 from .whirl import rigid_threshold, routh_coefficients
 
 Array = NDArray[np.float64]
@@ -107,7 +108,11 @@ class FilmDynamics:
 
 
 def film_dynamics(
-    solution: FilmSolution, turn: Array, *, following: Array | None = None
+    solution: FilmSolution,
+    turn: Array,
+    *,
+    following: Array | None = None,
+    rotations: bool = False,
 ) -> FilmDynamics:
     """Return the dynamic stiffness of a solved film.
 
@@ -118,10 +123,12 @@ def film_dynamics(
         From the film's frame to the load frame.
     following : (q, q) array, optional
         Stiffness with the viscosity following slow displacements, film frame [N/m].
+    rotations : bool
+        Add the journal's rotations, theta_x and theta_y; `turn` turns them as well.
     """
     state, speed = solution.state, solution.problem.speed
-    stiffness, damping = linearize(state)
-    law = DynamicStiffness(state)
+    stiffness, damping = linearize(state, rotations=rotations)
+    law = DynamicStiffness(state, rotations=rotations)
 
     def stored_oil(s: complex) -> ComplexArray:
         return law(s) - stiffness - s * damping
@@ -138,6 +145,25 @@ def film_dynamics(
         turn @ damping @ turn.T,
         stored_oil if stores else None,
     )
+
+
+def full_coefficients(
+    solution: FilmSolution, turn: Array, frequency_ratio: float | None
+) -> FullCoefficients:
+    """Return K, C and M over the journal's displacements and rotations, load frame.
+
+    Parameters
+    ----------
+    solution : FilmSolution
+    turn : (2, 2) array
+        From the film's frame to the load frame.
+    frequency_ratio : float or None
+        Whirl over shaft frequency at which they are wanted; None: they hold at any.
+    """
+    turn = np.asarray(np.kron(np.eye(2), turn), dtype=float)
+    dynamics = film_dynamics(solution, turn, rotations=True)
+    stiffness, damping = dynamics.coefficients(frequency_ratio or DEFAULT_RATIO)
+    return FullCoefficients(TRANSLATIONS + ROTATIONS, stiffness, damping, np.zeros_like(stiffness))
 
 
 def frequency_coefficients(

@@ -82,6 +82,26 @@ class FrequencyCoefficients:
 
 
 @dataclass(frozen=True)
+class FullCoefficients:
+    """K, C and M over all degrees of freedom of a bearing, load frame.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Degrees of freedom: x, y [m]; theta_x, theta_y, the journal's rotations about x and y
+        through the bearing's mid-plane [rad].
+    stiffness, damping, mass : (q, q) arrays
+        K_ij = -dQ_i/dq_j, C_ij = -dQ_i/dq_j-dot, Q the film's forces [N] and moments [N m] on the
+        journal. A fixed bearing's film has no mass.
+    """
+
+    names: tuple[str, ...]
+    stiffness: Array
+    damping: Array
+    mass: Array
+
+
+@dataclass(frozen=True)
 class OperatingPoint:
     """Static results, coefficients and the rigid rotor's verdict at one speed (SI, load frame).
 
@@ -123,6 +143,12 @@ class OperatingPoint:
         frequency, and at half the shaft's where there is no threshold.
     frequency_coefficients : FrequencyCoefficients or None
         Stiffness and damping at the ratios of ``film.frequency_ratio``.
+    moment : (2,) array
+        M_x and M_y of the film on the journal about the bearing's mid-plane [N m]; 0 where both
+        halves are alike.
+    coefficients_full : FullCoefficients or None
+        Where asked for (``film.rotations``): K, C and M over displacements and rotations. With
+        ``viscosity_response = following`` the rotations are still at frozen viscosity.
     critical_mass : float or None
         Per bearing [kg].
     critical_mass_dimensionless : float or None
@@ -179,6 +205,8 @@ class OperatingPoint:
     outlet_temperature: float | None = None
     coefficient_frequency_ratio: float | None = None
     frequency_coefficients: FrequencyCoefficients | None = None
+    moment: Array = field(default_factory=lambda: np.full(2, math.nan))
+    coefficients_full: FullCoefficients | None = None
     fields: FilmFields | None = field(default=None, repr=False)
 
     @property
@@ -190,6 +218,9 @@ class OperatingPoint:
         from ..display import as_html
 
         return as_html(self)
+
+
+_NESTED = ("heat_balance", "frequency_coefficients", "coefficients_full")
 
 
 def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
@@ -206,7 +237,7 @@ def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
         if entry.name == "fields":
             continue
         value = getattr(point, entry.name)
-        if entry.name in ("heat_balance", "frequency_coefficients") and value is not None:
+        if value is not None and entry.name in _NESTED:
             value = dataclasses.asdict(value)
         record[entry.name] = plain(value)
     return record
@@ -235,6 +266,13 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
         values["frequency_coefficients"] = FrequencyCoefficients(
             **{name: np.array(value, dtype=float) for name, value in arrays}
         )
+    if "moment" in values:
+        values["moment"] = np.array(values["moment"], dtype=float).reshape(2)
+    if values.get("coefficients_full") is not None:
+        full = dict(values["coefficients_full"])
+        names = tuple(full.pop("names"))
+        matrices = {name: np.array(value, dtype=float) for name, value in full.items()}
+        values["coefficients_full"] = FullCoefficients(names, **matrices)
     return OperatingPoint(**values)
 
 

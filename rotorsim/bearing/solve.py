@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
@@ -15,12 +16,17 @@ from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import film_flow
 from ..film.heat import HeatBalance, with_groove_oil
 from ..film.linearization import following_stiffness
-from ..film.losses import friction_force, peak, side_flow
+from ..film.losses import friction_force, journal_moment, peak, side_flow
 from ..film.solution import FilmSolution, WarmStart, solve_film
 from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
 from ..status import SolveStatus
 from .checks import regime_warnings
-from .dynamics import film_dynamics, frequency_coefficients, stored_oil_warnings
+from .dynamics import (
+    film_dynamics,
+    frequency_coefficients,
+    full_coefficients,
+    stored_oil_warnings,
+)
 from .operating_point import FilmFields, OperatingPoint, failed_point
 from .whirl import rigid_threshold
 
@@ -41,6 +47,7 @@ def solve(
     speed: float | None = None,
     radial_clearance: float | None = None,
     thermal_model: str | None = None,
+    rotations: bool | None = None,
 ) -> OperatingPoint:
     """One operating point of a scenario, its fields included.
 
@@ -53,6 +60,9 @@ def solve(
         [m]; likewise.
     thermal_model : str, optional
         ``isothermal`` or ``thd``; likewise.
+    rotations : bool, optional
+        Give K and C over the journal's rotations as well (`OperatingPoint.coefficients_full`).
+        Default: as the scenario says (``film.rotations``).
 
     Raises
     ------
@@ -71,6 +81,8 @@ def solve(
         _only("radial_clearance", radial_clearance, scenario.radial_clearances),
         ThermalModel(_only("thermal_model", thermal_model, models)),
     )
+    if rotations is not None:
+        case = replace(case, film=replace(case.film, rotations=rotations))
     omega = _only("speed", speed, tuple(float(s) for s in scenario.speeds))
     return solve_case(case, omega, keep_fields=True)[0]
 
@@ -203,6 +215,10 @@ def operating_point(
         damping=damping,
         coefficient_frequency_ratio=frequency_ratio,
         frequency_coefficients=frequency_coefficients(dynamics, case.film.frequency_ratios),
+        moment=turn @ journal_moment(state),
+        coefficients_full=(
+            full_coefficients(solution, turn, frequency_ratio) if case.film.rotations else None
+        ),
         critical_mass=threshold.critical_mass if threshold else None,
         critical_mass_dimensionless=threshold.critical_mass_dimensionless if threshold else None,
         whirl_frequency_ratio=threshold.whirl_frequency_ratio if threshold else None,

@@ -53,6 +53,17 @@ CONVENTIONS = (
 )
 """Lines that every file in the load frame carries."""
 
+_NAMES = ("x", "y", "theta_x", "theta_y")
+
+
+def _full_attributes(kind: str, i: str, j: str) -> tuple[str, str]:
+    """Unit and description of one entry of the full K or C."""
+    power = 1 + (i in _NAMES[2:]) + (j in _NAMES[2:])
+    unit = {1: ("N m-1", "N s m-1"), 2: ("N", "N s"), 3: ("N m", "N m s")}[power][kind == "c"]
+    words = "stiffness" if kind == "k" else "damping"
+    return unit, f"{words} -dQ_{i}/d{j}{'' if kind == 'k' else '-dot'}, rotations included"
+
+
 ATTRIBUTES: dict[str, tuple[str, str]] = {
     "thermal_model": ("1", "thermal model of the film"),
     "radial_clearance": ("m", "radial clearance"),
@@ -78,6 +89,14 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
         for i in "xy"
         for j in "xy"
     },
+    **{
+        f"{kind}_{i}_{j}": _full_attributes(kind, i, j)
+        for kind in "kc"
+        for i in _NAMES
+        for j in _NAMES
+    },
+    "moment_x": ("N m", "moment of the film on the journal about x, through the mid-plane"),
+    "moment_y": ("N m", "moment of the film on the journal about y, through the mid-plane"),
     "coefficient_frequency_ratio": (
         "1",
         "whirl frequency over shaft frequency at which kxx ... cyy hold; NaN: at any",
@@ -125,6 +144,9 @@ SCALARS = (
     "coefficient_frequency_ratio",
     "residual",
 )
+
+FULL_COEFFICIENTS = tuple(f"{kind}_{i}_{j}" for kind in "kc" for i in _NAMES for j in _NAMES)
+"""K and C over displacements and rotations, row by row: ``k_x_x`` ... ``c_theta_y_theta_y``."""
 
 TEXTS = ("status", "stability", "cavitation")
 
@@ -238,6 +260,11 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
     damping = np.array([np.asarray(p.damping, dtype=float).ravel() for p in points])
     values = np.hstack([stiffness, damping])
     columns: dict[str, np.ndarray] = {name: values[:, i] for i, name in enumerate(COEFFICIENTS)}
+    moments = np.array([np.asarray(p.moment, dtype=float) for p in points])
+    columns["moment_x"], columns["moment_y"] = moments[:, 0], moments[:, 1]
+    if any(p.coefficients_full is not None for p in points):
+        full = np.array([_full_row(p) for p in points])
+        columns.update(zip(FULL_COEFFICIENTS, full.T, strict=True))
     for name in SCALARS:
         column = [getattr(p, name) for p in points]
         columns[name] = np.array([np.nan if v is None else float(v) for v in column])
@@ -246,6 +273,14 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
         column = [getattr(p, name) for p in points]
         columns[name] = _text(["" if v is None else v for v in column])
     return columns
+
+
+def _full_row(point: OperatingPoint) -> np.ndarray:
+    """Full K and C, row by row; NaN where the point has none."""
+    full = point.coefficients_full
+    if full is None:
+        return np.full(len(FULL_COEFFICIENTS), np.nan)
+    return np.concatenate([full.stiffness.ravel(), full.damping.ravel()])
 
 
 def stack(

@@ -69,6 +69,14 @@ class Displacements:
     shapes: Array
     scales: Array
 
+    def joined(self, others: Displacements) -> Displacements:
+        """Return these displacements and, behind them, the `others`."""
+        return Displacements(
+            self.names + others.names,
+            np.concatenate([self.shapes, others.shapes]),
+            np.concatenate([self.scales, others.scales]),
+        )
+
 
 @dataclass(frozen=True)
 class FilmGeometry:

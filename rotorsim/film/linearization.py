@@ -17,16 +17,18 @@ thermal equilibrium, is what static load tests measure (`following_stiffness`).
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from .flow_law import COUETTE_POWER, POISEUILLE_POWER
-from .geometry import CENTER
+from .geometry import CENTER, Displacements
+from .geometry import rotations as journal_rotations
 from .kernels import kernel
-from .operator import neighbour
+from .operator import film_operator, neighbour
 from .problem import FilmState
 from .rupture import Factor
 from .thd import ThermalFilm, solve_thermal_film
@@ -39,14 +41,77 @@ STEP_TOLERANCE = 1e-9
 """Change of log viscosity at which a displaced film counts as converged."""
 
 
-def linearize(state: FilmState) -> tuple[Array, Array]:
+@dataclass(frozen=True)
+class Motions:
+    """Displacements whose motions solve one film matrix.
+
+    Attributes
+    ----------
+    state : FilmState
+    displacements : Displacements
+    factor : Factor
+        Of that matrix.
+    """
+
+    state: FilmState
+    displacements: Displacements
+    factor: Factor
+
+    def sources(self) -> Array:
+        """What unit displacements, then unit velocities, add to each cell's continuity."""
+        state, shapes = self.state, self.displacements.shapes
+        squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
+        right = [displacement_sources(state, shapes), -shapes[:, CENTER] * squeezed]
+        sources = np.concatenate(right)
+        sources[:, state.operator.fixed] = 0.0
+        return sources
+
+    def reaction(self, right: Array, factor: Factor | None = None) -> NDArray[Any]:
+        """-dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
+        state, factor = self.state, factor or self.factor
+        perturbed = np.where(state.solution.full, factor.solve(right), 0.0) * state.operator.area
+        shapes = self.displacements.shapes[:, CENTER].reshape(-1, perturbed[0].size)
+        multiplicity = state.problem.geometry.multiplicity
+        return np.asarray(-multiplicity * shapes @ perturbed.reshape(len(right), -1).T)
+
+
+def film_motions(state: FilmState, *, rotations: bool = False) -> tuple[Motions, ...]:
+    """Return the film's own displacements, and the journal's rotations if asked for.
+
+    Rotations thin one half of a symmetric film by what they thicken the other: on a half mesh they
+    are motions of their own, whose pressure vanishes at the mid-plane.
+    """
+    problem, factor = state.problem, state.solution.factor
+    own = problem.geometry.displacements
+    if not rotations:
+        return (Motions(state, own, factor),)
+    turning = journal_rotations(problem.bearing, problem.mesh)
+    if not problem.mesh.half:
+        return (Motions(state, own.joined(turning), factor),)
+    topology = problem.topology.antisymmetric()
+    operator = film_operator(topology, state.thickness, state.layers, problem.surface_speed)
+    antisymmetric = problem.rupture.refactor(operator, state.solution)
+    return Motions(state, own, factor), Motions(state, turning, antisymmetric)
+
+
+def linearize(state: FilmState, *, rotations: bool = False) -> tuple[Array, Array]:
     """Return K [N/m] and C [N s/m] over the film's displacements, (q, q) each, film frame.
 
     The liquid fraction of a mass-conserving film takes its steady value at once; with the oil that
     it stores see `DynamicStiffness`.
+
+    Parameters
+    ----------
+    state : FilmState
+    rotations : bool
+        Add the journal's rotations behind the film's own displacements.
     """
-    stiffness, damping = np.split(_reaction(state, _motion_sources(state)), 2, axis=1)
-    return stiffness.copy(), damping.copy()
+    blocks = [
+        np.split(motions.reaction(motions.sources()), 2, axis=1)
+        for motions in film_motions(state, rotations=rotations)
+    ]
+    stiffness, damping = zip(*blocks, strict=True)
+    return np.asarray(block_diag(*stiffness)), np.asarray(block_diag(*damping))
 
 
 class DynamicStiffness:
@@ -56,43 +121,30 @@ class DynamicStiffness:
     ----------
     state : FilmState
         At rest.
+    rotations : bool
+        As in `linearize`.
     """
 
-    def __init__(self, state: FilmState) -> None:
-        self._state = state
-        self._sources = _motion_sources(state)
+    def __init__(self, state: FilmState, *, rotations: bool = False) -> None:
+        self._motions = film_motions(state, rotations=rotations)
+        self._sources = [motions.sources() for motions in self._motions]
+        self._rupture = state.problem.rupture
         self._volume = state.center_thickness * state.operator.area
 
     def __call__(self, s: complex) -> NDArray[np.complex128]:
         """Return A(s) [N/m], (q, q), film frame."""
-        rupture, solution = self._state.problem.rupture, self._state.solution
-        factor = rupture.dynamic_factor(solution, s * self._volume)
-        moved, moving = np.split(_reaction(self._state, self._sources, factor), 2, axis=1)
-        return moved + s * moving
-
-
-def _motion_sources(state: FilmState) -> Array:
-    """What unit displacements, then unit velocities, add to each cell's continuity, (2q, n, m)."""
-    shapes = state.problem.geometry.displacements.shapes
-    squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
-    right = np.concatenate([displacement_sources(state, shapes), -shapes[:, CENTER] * squeezed])
-    right[:, state.operator.fixed] = 0.0
-    return right
+        blocks = []
+        for motions, sources in zip(self._motions, self._sources, strict=True):
+            factor = self._rupture.dynamic_factor(motions.factor, s * self._volume)
+            moved, moving = np.split(motions.reaction(sources, factor), 2, axis=1)
+            blocks.append(moved + s * moving)
+        return np.asarray(block_diag(*blocks))
 
 
 def stiffness_matrix(state: FilmState) -> Array:
     """Return K alone [N/m], (q, q): the Jacobian of the forces with its sign turned."""
-    shapes = state.problem.geometry.displacements.shapes
-    return _reaction(state, displacement_sources(state, shapes))
-
-
-def _reaction(state: FilmState, right: Array, factor: Factor | None = None) -> NDArray[Any]:
-    """-dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
-    geometry, solution = state.problem.geometry, state.solution
-    factor = factor or solution.factor
-    perturbed = np.where(solution.full, factor.solve(right), 0.0) * state.operator.area
-    shapes = geometry.displacements.shapes[:, CENTER].reshape(-1, perturbed[0].size)
-    return -geometry.multiplicity * shapes @ perturbed.reshape(len(right), -1).T
+    (motions,) = film_motions(state)
+    return motions.reaction(displacement_sources(state, motions.displacements.shapes))
 
 
 def displacement_sources(state: FilmState, shapes: Array) -> Array:

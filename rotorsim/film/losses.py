@@ -1,4 +1,4 @@
-"""Friction, power loss and flow of a solved film (Dal Eq. 17-18, corrected)."""
+"""Friction, power loss, moment and flow of a solved film (Dal Eq. 17-18, corrected)."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import RupturedFriction
+from .geometry import CENTER, rotations
 from .problem import FilmProblem, FilmState
 
 Array = NDArray[np.float64]
@@ -36,6 +37,15 @@ def friction_force(problem: FilmProblem, state: FilmState, fraction: Array) -> f
         / (state.center_thickness * state.layers.f0)
     )
     return float(problem.mesh.multiplicity * (driven + dragged))
+
+
+def journal_moment(state: FilmState) -> Array:
+    """Moments (M_x, M_y) of the film on the journal about its mid-plane [N m], film frame."""
+    problem = state.problem
+    if problem.mesh.half:
+        return np.zeros(2)
+    shapes = rotations(problem.bearing, problem.mesh).shapes[:, CENTER]
+    return np.tensordot(shapes, state.solution.pressure * state.operator.area, axes=2)
 
 
 def side_flow(problem: FilmProblem, state: FilmState) -> float:

@@ -10,7 +10,7 @@ groove or an end holds a known pressure half a cell away instead of a neighbour.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,6 +75,12 @@ class FaceTopology:
     area: Array
     dx: Array
     dy: Array
+
+    def antisymmetric(self) -> FaceTopology:
+        """Return the half film's faces with the pressure zero at the mid-plane."""
+        spacing = self.spacing.copy()
+        spacing[SOUTH, :, 0] = 0.5 * self.dy[0]
+        return replace(self, spacing=spacing)
 
 
 def face_topology(mesh: FilmMesh, supply_pressure: Array) -> FaceTopology:

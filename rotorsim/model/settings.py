@@ -122,6 +122,8 @@ class FilmSettings:
     cavitation, inception, mesh, ruptured_friction, viscosity_response
     frequency_ratios : tuple of float
         Whirl over shaft frequencies, ascending, at which K and C are given besides.
+    rotations : bool
+        Give K and C over the journal's rotations as well.
     """
 
     cavitation: Cavitation = Cavitation.REYNOLDS
@@ -130,6 +132,7 @@ class FilmSettings:
     ruptured_friction: RupturedFriction = RupturedFriction.LIQUID
     viscosity_response: ViscosityResponse = ViscosityResponse.FROZEN
     frequency_ratios: tuple[float, ...] = ()
+    rotations: bool = False
 
     def __post_init__(self) -> None:
         _as_choice(self, "film", cavitation=Cavitation, inception=Inception)

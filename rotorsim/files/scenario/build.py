@@ -88,6 +88,7 @@ def film_settings(table: FilmTable) -> FilmSettings:
         table.ruptured_friction,
         table.viscosity_response,
         tuple(table.frequency_ratio),
+        table.rotations,
     )
 
 

@@ -142,6 +142,7 @@ class FilmTable(Table):
         ViscosityResponse.FROZEN
     )
     frequency_ratio: Annotated[list[float], one_or_more] = Field(default=[], max_length=64)
+    rotations: bool = False
 
 
 class ThermalTable(Table):

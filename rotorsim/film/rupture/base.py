@@ -101,12 +101,12 @@ class RuptureCondition(Protocol):
         """Return the area of each cell in which oil is squeezed when the film thins [m2]."""
         ...
 
-    def dynamic_factor(self, solution: PressureSolution, rate: NDArray[Any]) -> Factor:
+    def dynamic_factor(self, factor: Factor, rate: NDArray[Any]) -> Factor:
         """Return the factor of the film that moves as exp(s t).
 
         Parameters
         ----------
-        solution : PressureSolution
+        factor : Factor
             Of the film at rest.
         rate : (n, m) complex array
             s times the volume of each cell [m3/s]; ruptured cells whose content may change store
@@ -130,10 +130,10 @@ class ConnectedFilm:
         del solution
         return operator.area
 
-    def dynamic_factor(self, solution: PressureSolution, rate: NDArray[Any]) -> Factor:
+    def dynamic_factor(self, factor: Factor, rate: NDArray[Any]) -> Factor:
         """Return the factor of the film at rest: nothing is stored."""
         del rate
-        return solution.factor
+        return factor
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor `operator` on the solution's full cells."""

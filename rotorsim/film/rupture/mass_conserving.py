@@ -124,10 +124,10 @@ class MassConserving:
         assert solution.liquid is not None
         return solution.liquid * operator.area
 
-    def dynamic_factor(self, solution: PressureSolution, rate: NDArray[Any]) -> Factor:
+    def dynamic_factor(self, factor: Factor, rate: NDArray[Any]) -> Factor:
         """Return the factor with the oil that the ruptured cells store and give back."""
-        assert isinstance(solution.factor, MixedFactor)
-        return solution.factor.with_stored_oil(rate)
+        assert isinstance(factor, MixedFactor)
+        return factor.with_stored_oil(rate)
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor the mixed system of `operator` in the state of `solution`."""
