@@ -1,0 +1,363 @@
+"""What carries a node of a rotor: films, tables, springs, pedestals, seals."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError, OutOfRangeError
+
+if TYPE_CHECKING:
+    from ..table import CoefficientInterpolator
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+Matrices = tuple[Array, Array, Array]
+
+_SPEED_TOLERANCE = 1e-9
+"""Relative; two speeds nearer than this are the same one written in different units."""
+
+
+class Support(ABC):
+    """Linearised support of one node: K, C and M over its unknowns at any shaft speed.
+
+    A further kind needs `matrices` only, and `speeds` where it knows a range of speeds.
+    """
+
+    unknowns: tuple[str, ...] = ("x", "y")
+    """Names of the unknowns; the first `coupled` are the node's, the others the support's own."""
+    coupled: int = 2
+    carries_load: bool = True
+    """Whether it takes part in the static load; a seal does not."""
+    frequency_dependent: bool = False
+    """Whether `dynamic_stiffness` is more than K + s C + s^2 M."""
+
+    @property
+    def speeds(self) -> Array:
+        """Tabulated speeds (n,) [rad/s], between the first and last of which it is known.
+
+        Empty: known at every speed.
+        """
+        return np.zeros(0)
+
+    @abstractmethod
+    def matrices(self, speed: ArrayLike) -> Matrices:
+        """Stiffness, damping and mass, each speed.shape + (m, m) or (m, m) (SI).
+
+        NaN marks a speed without coefficients, next to a point that did not converge.
+
+        Raises
+        ------
+        OutOfRangeError
+            A speed [rad/s] lies outside `speeds`.
+        """
+
+    def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
+        """Force per displacement (m, m) [N/m] of a motion exp(s t) at a shaft speed [rad/s]."""
+        k, c, m = self.matrices(speed)
+        return np.asarray(k + s * c + s * s * m, dtype=complex)
+
+    def force(self, q: ArrayLike, v: ArrayLike, speed: float) -> Array:
+        """Force (m,) [N] of the support at displacements and velocities from equilibrium (m,)."""
+        k, c, _ = self.matrices(speed)
+        return -(k @ np.asarray(q, dtype=float) + c @ np.asarray(v, dtype=float))
+
+
+@dataclass(frozen=True, eq=False)
+class ConstantSupport(Support):
+    """Stiffness, damping and mass that do not change with speed.
+
+    Parameters
+    ----------
+    stiffness, damping, mass : array-like
+        (m, m) matrices, m values of the diagonal, or one value for x and y (SI).
+    unknowns : tuple of str
+    coupled : int or None
+        How many of them are the node's; None: all.
+    carries_load : bool
+    """
+
+    stiffness: ArrayLike
+    damping: ArrayLike = 0.0
+    mass: ArrayLike = 0.0
+    unknowns: tuple[str, ...] = ("x", "y")
+    coupled: int = -1
+    carries_load: bool = True
+
+    def __post_init__(self) -> None:
+        for name in ("stiffness", "damping", "mass"):
+            matrix = _square(getattr(self, name), len(self.unknowns), name)
+            object.__setattr__(self, name, matrix)
+        if self.coupled < 0:
+            object.__setattr__(self, "coupled", len(self.unknowns))
+
+    def matrices(self, speed: ArrayLike) -> Matrices:
+        """Return K, C and M as given."""
+        del speed
+        return self.stiffness, self.damping, self.mass  # type: ignore[return-value]
+
+
+def cross_stiffness(value: float) -> ConstantSupport:
+    """Destabilising stiffness k_xy = -k_yx = `value` [N/m] of a seal or impeller.
+
+    It drives forward whirl where it is above zero, and carries no load.
+    """
+    return ConstantSupport([[0.0, value], [-value, 0.0]], carries_load=False)
+
+
+@dataclass(frozen=True, eq=False)
+class TableSupport(Support):
+    """One curve of a coefficient table: 2 x 2 stiffness and damping over speed.
+
+    Parameters
+    ----------
+    curve : CoefficientInterpolator
+        From `CoefficientTable.interpolator`.
+    mass : array-like
+        Added mass [kg], as for `ConstantSupport`.
+    carries_load : bool
+    """
+
+    curve: CoefficientInterpolator
+    mass: ArrayLike = 0.0
+    carries_load: bool = True
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mass", _square(self.mass, 2, "mass"))
+
+    @property
+    def speeds(self) -> Array:
+        """Tabulated speeds [rad/s]."""
+        return self.curve.speeds
+
+    def matrices(self, speed: ArrayLike) -> Matrices:
+        """Interpolate (monotone cubic); see `Support.matrices`."""
+        stiffness, damping = self.curve(speed, gaps="nan")
+        return stiffness, damping, self.mass  # type: ignore[return-value]
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixTable(Support):
+    """Matrices of any size over speed: a film with its pads, journal rotations, a seal.
+
+    Parameters
+    ----------
+    table_speeds : (n,) array
+        Ascending [rad/s].
+    stiffness, damping, mass : (n, m, m) arrays
+        SI; `mass` may be left out.
+    unknowns : tuple of str
+    coupled : int
+        How many of the unknowns, the first ones, are the node's.
+    carries_load : bool
+    """
+
+    table_speeds: Array
+    stiffness: Array
+    damping: Array
+    mass: Array | None = None
+    unknowns: tuple[str, ...] = ("x", "y")
+    coupled: int = 2
+    carries_load: bool = True
+
+    def __post_init__(self) -> None:
+        speeds = np.atleast_1d(np.asarray(self.table_speeds, dtype=float))
+        if speeds.ndim != 1 or not np.all(np.isfinite(speeds)) or np.any(np.diff(speeds) <= 0.0):
+            raise InputError("must be finite and ascend", key="speeds", value=self.table_speeds)
+        object.__setattr__(self, "table_speeds", speeds)
+        shape = (speeds.size, len(self.unknowns), len(self.unknowns))
+        for name in ("stiffness", "damping", "mass"):
+            given = getattr(self, name)
+            value = np.zeros(shape) if given is None else np.asarray(given, dtype=float)
+            if value.shape != shape or not np.all(np.isfinite(value)):
+                raise InputError(f"must be finite, of shape {shape}", key=name, value=value.shape)
+            object.__setattr__(self, name, value)
+
+    @property
+    def speeds(self) -> Array:
+        """Tabulated speeds [rad/s]."""
+        return self.table_speeds
+
+    @cached_property
+    def _curve(self):  # noqa: ANN202
+        from scipy.interpolate import PchipInterpolator
+
+        stacked = np.stack([self.stiffness, self.damping, self.mass], axis=1)
+        if self.table_speeds.size == 1:
+            return lambda speed: np.broadcast_to(stacked[0], (*np.shape(speed), *stacked.shape[1:]))
+        return PchipInterpolator(self.table_speeds, stacked, axis=0)
+
+    def matrices(self, speed: ArrayLike) -> Matrices:
+        """Interpolate each entry (monotone cubic)."""
+        omega = np.asarray(speed, dtype=float)
+        low, high = float(self.table_speeds[0]), float(self.table_speeds[-1])
+        outside = (omega < low * (1.0 - _SPEED_TOLERANCE)) | (omega > high * (1 + _SPEED_TOLERANCE))
+        if np.any(outside):
+            raise OutOfRangeError(
+                f"the table holds speeds from {low:.6g} to {high:.6g} rad/s", key="speed",
+                value=float(omega[outside].flat[0]) if omega.ndim else float(omega),
+            )  # fmt: skip
+        values = np.asarray(self._curve(np.clip(omega, low, high)))
+        return values[..., 0, :, :], values[..., 1, :, :], values[..., 2, :, :]
+
+
+@dataclass(frozen=True, eq=False)
+class Pedestal(Support):
+    """A support whose housing stands on springs: a pedestal in series.
+
+    Parameters
+    ----------
+    inner : Support
+        Between the node and the housing; its own unknowns are measured from the housing.
+    mass, stiffness, damping : array-like
+        Of the housing on its pedestal, along x and y, as for `ConstantSupport`.
+
+    Notes
+    -----
+    With T q the displacements relative to the housing, the inner matrices become T' K T, and the
+    pedestal's are added on the housing's own x and y. A pad's inertia counts relative to the
+    housing.
+    """
+
+    inner: Support
+    mass: ArrayLike
+    stiffness: ArrayLike
+    damping: ArrayLike = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "stiffness", "damping"):
+            object.__setattr__(self, name, _square(getattr(self, name), 2, name))
+        set_ = object.__setattr__
+        set_(self, "unknowns", (*self.inner.unknowns, "housing_x", "housing_y"))
+        set_(self, "coupled", self.inner.coupled)
+        set_(self, "carries_load", self.inner.carries_load)
+
+    @property
+    def speeds(self) -> Array:
+        """Of the inner support [rad/s]."""
+        return self.inner.speeds
+
+    @property
+    def frequency_dependent(self) -> bool:  # type: ignore[override]
+        """As the inner support."""
+        return self.inner.frequency_dependent
+
+    @property
+    def _relative(self) -> Array:
+        """From the unknowns to those relative to the housing."""
+        size = len(self.inner.unknowns)
+        relative = np.eye(size, size + 2)
+        for axis, column in (("x", size), ("y", size + 1)):
+            relative[self.inner.unknowns.index(axis), column] = -1.0
+        return relative
+
+    def _in_series(self, inner: NDArray, own: NDArray) -> NDArray:
+        relative = self._relative
+        result = relative.T @ inner @ relative
+        result[..., -2:, -2:] += own
+        return result
+
+    def matrices(self, speed: ArrayLike) -> Matrices:
+        """Matrices of the node's, the inner support's and the housing's unknowns."""
+        own = (self.stiffness, self.damping, self.mass)
+        stiffness, damping, mass = (
+            self._in_series(inner, np.asarray(part))
+            for inner, part in zip(self.inner.matrices(speed), own, strict=True)
+        )
+        return stiffness, damping, mass
+
+    def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
+        """Force per displacement, the inner support's own law included."""
+        own = np.asarray(self.stiffness) + s * np.asarray(self.damping)
+        own = own + s * s * np.asarray(self.mass)
+        return self._in_series(self.inner.dynamic_stiffness(s, speed), own)
+
+
+@dataclass(frozen=True, eq=False)
+class Turned(Support):
+    """A support given in a frame that is turned by `angle` [rad] from x towards y."""
+
+    inner: Support
+    angle: float
+
+    def __post_init__(self) -> None:
+        for name in ("unknowns", "coupled", "carries_load"):
+            object.__setattr__(self, name, getattr(self.inner, name))
+
+    @property
+    def speeds(self) -> Array:
+        """Of the inner support [rad/s]."""
+        return self.inner.speeds
+
+    @property
+    def frequency_dependent(self) -> bool:  # type: ignore[override]
+        """As the inner support."""
+        return self.inner.frequency_dependent
+
+    @property
+    def _turn(self) -> Array:
+        """From the machine's unknowns to the inner support's."""
+        turn = np.eye(len(self.unknowns))
+        c, s = np.cos(self.angle), np.sin(self.angle)
+        for first, second in (("x", "y"), ("theta_x", "theta_y"), ("housing_x", "housing_y")):
+            if first in self.unknowns:
+                i, j = self.unknowns.index(first), self.unknowns.index(second)
+                turn[i, i] = turn[j, j] = c
+                turn[i, j], turn[j, i] = s, -s
+        return turn
+
+    def matrices(self, speed: ArrayLike) -> Matrices:
+        """Matrices in the machine's frame."""
+        turn = self._turn
+        k, c, m = (turn.T @ part @ turn for part in self.inner.matrices(speed))
+        return k, c, m
+
+    def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
+        """Force per displacement in the machine's frame."""
+        return self._turn.T @ self.inner.dynamic_stiffness(s, speed) @ self._turn
+
+
+def _square(value: ArrayLike, size: int, name: str) -> Array:
+    """(size, size) matrix from one number, a diagonal or a matrix."""
+    array = np.asarray(value, dtype=float)
+    if array.ndim == 0:
+        array = np.full(size, float(array))
+    if array.ndim == 1:
+        array = np.diag(array)
+    if array.shape != (size, size) or not np.all(np.isfinite(array)):
+        raise InputError(
+            f"must be a finite {size} x {size} matrix, or {size} values, or one", key=name,
+            value=np.shape(value),
+        )  # fmt: skip
+    return array
+
+
+def common_speeds(supports: Sequence[Support]) -> Array:
+    """Tabulated speeds (n,) [rad/s] of all supports, within the range that all of them know.
+
+    Raises
+    ------
+    InputError
+        Their tables have no speed in common.
+    """
+    tables = [support.speeds for support in supports if support.speeds.size]
+    if not tables:
+        return np.zeros(0)
+    low, high = max(float(t[0]) for t in tables), min(float(t[-1]) for t in tables)
+    if low > high * (1.0 + _SPEED_TOLERANCE):
+        raise InputError(
+            f"the supports' tables have no speed in common: one begins at {low:.6g}, one ends at "
+            f"{high:.6g} rad/s", key="speed",
+        )  # fmt: skip
+    every = np.unique(np.concatenate(tables))
+    every = every[(every >= low) & (every <= high)]
+    if len(tables) == 1:
+        return every
+    apart = np.diff(every, prepend=-np.inf) > _SPEED_TOLERANCE * np.abs(every)
+    return every[apart]

@@ -1,0 +1,182 @@
+"""A shaft as its drawing has it: sections, discs, materials."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..errors import InputError
+
+
+@dataclass(frozen=True)
+class Material:
+    """Elastic material of a shaft; the default is steel.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        [Pa]
+    density : float
+        [kg/m^3]
+    poisson_ratio : float
+        Ignored where `shear_modulus` is given, but for the shear coefficient.
+    shear_modulus : float or None
+        [Pa]; None: from Young's modulus and Poisson's ratio.
+    """
+
+    youngs_modulus: float = 207e9
+    density: float = 7830.0
+    poisson_ratio: float = 0.3
+    shear_modulus: float | None = None
+
+    def __post_init__(self) -> None:
+        _above_zero(youngs_modulus=self.youngs_modulus)
+        _not_negative(density=self.density)
+        if not -1.0 < self.poisson_ratio <= 0.5:
+            raise InputError(
+                "must lie above -1 and be at most 0.5", key="rotor.poisson_ratio",
+                value=self.poisson_ratio,
+            )  # fmt: skip
+        if self.shear_modulus is not None:
+            _above_zero(shear_modulus=self.shear_modulus)
+            ratio = self.youngs_modulus / (2.0 * self.shear_modulus) - 1.0
+            if not -1.0 < ratio <= 0.5:
+                raise InputError(
+                    "does not fit Young's modulus: E/(2 G) - 1 must lie between -1 and 0.5",
+                    key="rotor.shear_modulus", value=self.shear_modulus,
+                )  # fmt: skip
+            object.__setattr__(self, "poisson_ratio", ratio)
+
+    @property
+    def shear(self) -> float:
+        """Shear modulus [Pa]."""
+        if self.shear_modulus is not None:
+            return self.shear_modulus
+        return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+
+@dataclass(frozen=True)
+class Section:
+    """A piece of shaft, a cylinder or a cone, solid or hollow.
+
+    Parameters
+    ----------
+    length, outer_diameter : float
+        [m]
+    inner_diameter : float
+        [m]
+    outer_diameter_right, inner_diameter_right : float or None
+        At the right end of a linear taper [m]; None: as at the left end.
+    material : Material or None
+        None: the rotor's.
+    elements : int or None
+        Number of elements of equal length; None: by the mesh rule.
+    at : float or None
+        Left end, from the left end of the shaft [m]; None: where the section before ends.
+    layer : int
+        Sections of layers above 1 lie over (or in) those of layer 1, and need `at`.
+    stiffness : bool
+        With False the section has mass only (a sleeve that is not shrunk on).
+    """
+
+    length: float
+    outer_diameter: float
+    inner_diameter: float = 0.0
+    outer_diameter_right: float | None = None
+    inner_diameter_right: float | None = None
+    material: Material | None = None
+    elements: int | None = None
+    at: float | None = None
+    layer: int = 1
+    stiffness: bool = True
+
+    def __post_init__(self) -> None:
+        _above_zero(length=self.length, outer_diameter=self.outer_diameter)
+        _not_negative(inner_diameter=self.inner_diameter)
+        right = {"inner_diameter_right": self.inner_right, "outer_diameter_right": self.outer_right}
+        _not_negative(**right)
+        inner, outer = self.inner_diameter, self.outer_diameter
+        if not (inner < outer and self.inner_right < self.outer_right):
+            raise InputError(
+                "must be below the outer diameter", key="rotor.section.inner_diameter", value=inner
+            )
+        if self.elements is not None and self.elements < 1:
+            raise InputError("must be 1 or more", key="rotor.section.elements", value=self.elements)
+        if self.layer > 1 and self.at is None:
+            raise InputError(
+                "is missing: a section of a further layer needs its place", key="rotor.section.at"
+            )
+
+    @property
+    def outer_right(self) -> float:
+        """Outer diameter at the right end [m]."""
+        right = self.outer_diameter_right
+        return self.outer_diameter if right is None else right
+
+    @property
+    def inner_right(self) -> float:
+        """Inner diameter at the right end [m]."""
+        right = self.inner_diameter_right
+        return self.inner_diameter if right is None else right
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A rigid disc, or an added mass, at one place of the shaft.
+
+    Parameters
+    ----------
+    at : float
+        From the left end of the shaft [m].
+    mass : float
+        [kg]
+    polar_inertia, transverse_inertia : float
+        About the disc's centre [kg m^2]; both zero for an added mass.
+    name : str
+    """
+
+    at: float
+    mass: float
+    polar_inertia: float = 0.0
+    transverse_inertia: float = 0.0
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "polar_inertia", "transverse_inertia"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value >= 0.0):
+                raise InputError("must be 0 or more", key=f"rotor.disc.{name}", value=value)
+
+    @classmethod
+    def from_dimensions(
+        cls,
+        at: float,
+        outer_diameter: float,
+        width: float,
+        density: float,
+        inner_diameter: float = 0.0,
+        name: str = "",
+    ) -> Disc:
+        """Disc of constant width [m, kg/m^3]."""
+        _above_zero(outer_diameter=outer_diameter, width=width, density=density)
+        if not 0.0 <= inner_diameter < outer_diameter:
+            raise InputError(
+                "must lie between 0 and the outer diameter", key="rotor.disc.inner_diameter",
+                value=inner_diameter,
+            )  # fmt: skip
+        squares = outer_diameter**2 + inner_diameter**2
+        mass = density * width * math.pi / 4.0 * (outer_diameter**2 - inner_diameter**2)
+        polar = mass * squares / 8.0
+        return cls(at, mass, polar, 0.5 * polar + mass * width**2 / 12.0, name)
+
+
+def _above_zero(**values: float) -> None:
+    for name, value in values.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise InputError("must be above 0", key=f"rotor.{name}", value=value)
+
+
+def _not_negative(**values: float) -> None:
+    for name, value in values.items():
+        if not (math.isfinite(value) and value >= 0.0):
+            raise InputError("must be 0 or more", key=f"rotor.{name}", value=value)

@@ -1,0 +1,419 @@
+"""Shafts as Timoshenko beam elements: mesh, element matrices, assembly.
+
+Sources: Nelson, J. Mech. Des. 102 (1980) 793; Friswell, Penny, Garvey & Lees, Dynamics of Rotating
+Machines (2010), ch. 5; shear coefficient: Cowper, J. Appl. Mech. 33 (1966) 335.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..model.shaft import Disc, Material, Section
+from .rotor import Node, Rotor
+
+Array = NDArray[np.float64]
+
+MIN_ELEMENTS = 20
+"""Of the whole shaft, where the mesh rule decides."""
+_SAME_PLACE = 1e-6
+"""Of the shaft's length: places nearer than this share a node."""
+_POINTS = 5
+"""Gauss points of an element: exact for its mass matrix with constant section."""
+_UNKNOWNS = ("x", "y", "theta_x", "theta_y")
+
+
+@dataclass(frozen=True)
+class Beam:
+    """A shaft with its discs, from its drawing (SI).
+
+    Parameters
+    ----------
+    sections : tuple of Section
+        Those of layer 1 follow one another from the left end.
+    discs : tuple of Disc
+    material : Material
+        Of sections without one of their own.
+    shear : bool
+        With False the beam is that of Rayleigh: rotary inertia without shear.
+    axial_force : float
+        Along the whole shaft, tension above 0 [N].
+    internal_damping : float
+        Viscous and rotating: force -b K_s (dr/dt - i Omega r) on r = x + i y [s].
+    clockwise : bool
+        Sense of rotation seen from the left end; z then runs from left to right, else from right
+        to left. It decides the signs of the slopes.
+
+    Raises
+    ------
+    InputError
+        There is no section, one overlaps another of its layer or leaves the shaft, or a disc does.
+    """
+
+    sections: tuple[Section, ...]
+    discs: tuple[Disc, ...] = ()
+    material: Material = Material()
+    shear: bool = True
+    axial_force: float = 0.0
+    internal_damping: float = 0.0
+    clockwise: bool = True
+
+    def __post_init__(self) -> None:
+        if not any(section.layer == 1 for section in self.sections):
+            raise InputError("is missing: a shaft needs a section", key="rotor.section")
+        if not (math.isfinite(self.internal_damping) and self.internal_damping >= 0.0):
+            raise InputError(
+                "must be 0 or more (s)", key="rotor.internal_damping", value=self.internal_damping
+            )
+        if not math.isfinite(self.axial_force):
+            raise InputError("must be finite (N)", key="rotor.axial_force", value=self.axial_force)
+        self._check_layers()
+        for disc in self.discs:
+            self.check_place(disc.at, "rotor.disc.at")
+
+    def _check_layers(self) -> None:
+        slack = _SAME_PLACE * self.length
+        for layer in {section.layer for section in self.sections}:
+            spans = sorted(self._span(s) for s in self.sections if s.layer == layer)
+            for (_, end), (start, _) in pairwise(spans):
+                if start < end - slack or (layer == 1 and start > end + slack):
+                    word = "overlaps" if start < end else "leaves a gap to"
+                    raise InputError(
+                        f"{word} the section before, which ends at {end:g} m; a sleeve needs "
+                        "layer = 2", key="rotor.section.at", value=start,
+                    )  # fmt: skip
+            if spans[0][0] < -slack or spans[-1][1] > self.length + slack:
+                raise InputError(
+                    f"leaves the shaft, which goes from 0 to {self.length:g} m",
+                    key="rotor.section.at", value=spans[0][0],
+                )  # fmt: skip
+
+    @property
+    def length(self) -> float:
+        """Of the shaft [m]."""
+        return sum(section.length for section in self.sections if section.layer == 1)
+
+    def check_place(self, at: float, key: str) -> None:
+        """Refuse a place off the shaft."""
+        slack = _SAME_PLACE * self.length
+        if not (math.isfinite(at) and -slack <= at <= self.length + slack):
+            raise InputError(
+                f"must lie on the shaft, from 0 to {self.length:g} m", key=key, value=at
+            )
+
+    def _span(self, section: Section) -> tuple[float, float]:
+        """Left and right end of a section [m]."""
+        start = section.at
+        if start is None:
+            start = 0.0
+            for other in self.sections:
+                if other is section:
+                    break
+                if other.layer == 1:
+                    start = other.length + (start if other.at is None else other.at)
+        return start, start + section.length
+
+    def mesh(self, places: Sequence[float] = (), refinement: int = 1) -> Array:
+        """Nodes (n,) [m] from the left end: section ends, discs, `places`, and between them.
+
+        Parameters
+        ----------
+        places : sequence of float
+            Where a node is needed: supports, seals, probes, loads [m].
+        refinement : int
+            Number of parts into which every element is cut.
+
+        Notes
+        -----
+        Elements are shorter than the outer diameter of the section, and the shaft has 20 or more,
+        unless a section says how many it has.
+        """
+        spans = [(*self._span(section), section) for section in self.sections]
+        ends = [end for start, stop, _ in spans for end in (start, stop)]
+        inner = [
+            start + (stop - start) * i / section.elements
+            for start, stop, section in spans
+            if section.elements is not None
+            for i in range(1, section.elements)
+        ]
+        fixed = _merged([*ends, *inner, *(disc.at for disc in self.discs), *places], self.length)
+        nodes = [fixed[0]]
+        for left, right in pairwise(fixed):
+            middle = 0.5 * (left + right)
+            here = [s for start, stop, s in spans if start <= middle <= stop]
+            count = refinement
+            if not any(section.elements for section in here):
+                longest = min(*(s.outer_diameter for s in here), self.length / MIN_ELEMENTS)
+                count *= math.ceil((right - left) / longest * (1.0 - 1e-9))
+            nodes += [left + (right - left) * i / count for i in range(1, count + 1)]
+        return np.array(nodes)
+
+    def at(self, z: Array, layer_section: Section) -> tuple[Array, Array]:
+        """Inner and outer radius (n,) [m] of a section at places z (n,) [m]."""
+        start, stop = self._span(layer_section)
+        t = (z - start) / (stop - start)
+        inner = layer_section.inner_diameter
+        outer = layer_section.outer_diameter
+        inner = 0.5 * (inner + t * (layer_section.inner_right - inner))
+        outer = 0.5 * (outer + t * (layer_section.outer_right - outer))
+        return inner, outer
+
+    def properties(self, z: Array) -> tuple[Array, Array, Array, Array]:
+        """Bending stiffness, shear stiffness, mass and rotary inertia per length at z (n,) [m].
+
+        Returns
+        -------
+        bending, shear, mass, inertia : (n,) arrays
+            E I [N m^2], kappa G A [N], rho A [kg/m], rho I [kg m]; sums over the layers.
+        """
+        total = np.zeros((4, z.size))
+        middle = float(np.mean(z))
+        for section in self.sections:
+            start, stop = self._span(section)
+            if not start <= middle <= stop:
+                continue
+            inner, outer = self.at(z, section)
+            material = section.material or self.material
+            area = math.pi * (outer**2 - inner**2)
+            second = math.pi / 4.0 * (outer**4 - inner**4)
+            kappa = shear_coefficient(inner / outer, material.poisson_ratio)
+            if section.stiffness:
+                total[0] += material.youngs_modulus * second
+                total[1] += kappa * material.shear * area
+            total[2] += material.density * area
+            total[3] += material.density * second
+        if not np.all(total[0] > 0.0):
+            raise InputError(
+                "has no section with stiffness here", key="rotor.section", value=middle
+            )
+        return total[0], total[1], total[2], total[3]
+
+
+def shear_coefficient(
+    radius_ratio: float | Array, poisson_ratio: float
+) -> float | Array:
+    """Cowper's shear coefficient of a (hollow) circle; `radius_ratio` is inner over outer."""
+    m2 = np.square(radius_ratio)
+    first = (1.0 + m2) ** 2
+    return (
+        6.0 * (1.0 + poisson_ratio) * first
+        / ((7.0 + 6.0 * poisson_ratio) * first + (20.0 + 12.0 * poisson_ratio) * m2)
+    )  # fmt: skip
+
+
+def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) -> Rotor:
+    """Assemble the rotor of a shaft.
+
+    Parameters
+    ----------
+    beam : Beam
+    places : sequence of float
+        Where supports, seals, probes and loads need a node [m].
+    refinement : int
+        See `Beam.mesh`.
+
+    Returns
+    -------
+    Rotor
+        Unknowns x, y, theta_x = -dy/dz, theta_y = dx/dz at each node; its `bearing_nodes` are the
+        nodes at `places`, or the ends without them.
+    """
+    for place in places:
+        beam.check_place(place, "rotor.places")
+    nodes = beam.mesh(places, refinement)
+    size = 2 * nodes.size
+    mass, stiffness, gyroscopic, geometric = np.zeros((4, size, size))
+    for i, (left, right) in enumerate(pairwise(nodes)):
+        here = slice(2 * i, 2 * i + 4)
+        translation, rotation, bending, tension = element_matrices(beam, left, right)
+        mass[here, here] += translation + rotation
+        gyroscopic[here, here] += 2.0 * rotation
+        stiffness[here, here] += bending
+        geometric[here, here] += tension
+    names = [""] * nodes.size
+    for disc in beam.discs:
+        i = nearest_node(nodes, disc.at)
+        mass[2 * i, 2 * i] += disc.mass
+        mass[2 * i + 1, 2 * i + 1] += disc.transverse_inertia
+        gyroscopic[2 * i + 1, 2 * i + 1] += disc.polar_inertia
+        names[i] = disc.name or names[i]
+    damping = beam.internal_damping * stiffness
+    both = _BothPlanes(nodes.size, 1.0 if beam.clockwise else -1.0)
+    carried = [nearest_node(nodes, place) for place in places] or [0, nodes.size - 1]
+    return Rotor(
+        mass=both.alike(mass),
+        damping=both.alike(damping),
+        gyroscopic=both.crossed(gyroscopic),
+        stiffness=both.alike(stiffness + beam.axial_force * geometric),
+        circulatory=both.crossed(damping),
+        nodes=tuple(
+            Node(name or f"node{i}", _UNKNOWNS, float(z))
+            for i, (name, z) in enumerate(zip(names, nodes, strict=True))
+        ),
+        unbalance=np.zeros(nodes.size, dtype=complex),
+        bearing_nodes=tuple(dict.fromkeys(carried)),
+        kind="beam",
+        parameters={"length": beam.length},
+    )
+
+
+def element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Array, Array, Array]:
+    """Matrices (4, 4) of the element from `left` to `right` [m], in one plane.
+
+    Returns
+    -------
+    translation, rotation : arrays
+        Consistent mass of the translation and of the rotation (rotary inertia) [kg, kg m, kg m^2].
+    bending : array
+        Stiffness, shear included [N/m, N, N m].
+    tension : array
+        Geometric stiffness of a unit tension [1/m, 1, m].
+
+    Notes
+    -----
+    The unknowns are displacement and slope of the cross section at both ends. The shape functions
+    are the exact static ones of a uniform Timoshenko beam, with Phi = 12 E I/(kappa G A l^2) at the
+    element's middle; energies are integrated by Gauss' rule, which is exact for a uniform element
+    and lets the section vary along a tapered one.
+    """
+    length = right - left
+    place, weight = np.polynomial.legendre.leggauss(_POINTS)
+    s, weight = 0.5 * (1.0 + place), 0.5 * length * weight
+    bending, shear, mass, inertia = beam.properties(left + s * length)
+    if beam.shear:
+        middle = beam.properties(np.array([0.5 * (left + right)]))
+        phi = float(12.0 * middle[0][0] / (middle[1][0] * length**2))
+    else:
+        phi = 0.0
+    scale = 1.0 / (1.0 + phi)
+    one, two, three = np.ones_like(s), s**2, s**3
+    deflection = scale * np.array(
+        [
+            2.0 * three - 3.0 * two - phi * s + (1.0 + phi) * one,
+            length * (three - (2.0 + 0.5 * phi) * two + (1.0 + 0.5 * phi) * s),
+            -2.0 * three + 3.0 * two + phi * s,
+            length * (three - (1.0 - 0.5 * phi) * two - 0.5 * phi * s),
+        ]
+    )
+    steepness = scale / length * np.array(
+        [
+            6.0 * two - 6.0 * s - phi * one,
+            length * (3.0 * two - (4.0 + phi) * s + (1.0 + 0.5 * phi) * one),
+            -6.0 * two + 6.0 * s + phi * one,
+            length * (3.0 * two - (2.0 - phi) * s - 0.5 * phi * one),
+        ]
+    )  # fmt: skip
+    slope = scale * np.array(
+        [
+            6.0 / length * (two - s),
+            3.0 * two - (4.0 + phi) * s + (1.0 + phi) * one,
+            6.0 / length * (s - two),
+            3.0 * two - (2.0 - phi) * s,
+        ]
+    )
+    curvature = scale / length * np.array(
+        [
+            6.0 / length * (2.0 * s - one),
+            6.0 * s - (4.0 + phi) * one,
+            6.0 / length * (one - 2.0 * s),
+            6.0 * s - (2.0 - phi) * one,
+        ]
+    )  # fmt: skip
+    elastic = (curvature * (weight * bending)) @ curvature.T
+    if beam.shear:
+        strain = steepness - slope
+        elastic += (strain * (weight * shear)) @ strain.T
+    return (
+        (deflection * (weight * mass)) @ deflection.T,
+        (slope * (weight * inertia)) @ slope.T,
+        elastic,
+        (steepness * weight) @ steepness.T,
+    )
+
+
+def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: int) -> float:
+    """Largest relative change of natural frequencies when every element is halved.
+
+    Parameters
+    ----------
+    beam : Beam
+    places : sequence of float
+        Nodes with a spring to ground each [m].
+    stiffness : float
+        Of each spring [N/m].
+    count : int
+        Number of frequencies looked at, the lowest ones, in one plane, without rotation.
+    """
+    from scipy.linalg import eigh
+
+    values = []
+    for refinement in (1, 2):
+        rotor = beam_rotor(beam, places, refinement)
+        springs = np.array(rotor.stiffness)
+        for node in rotor.bearing_nodes:
+            x = int(rotor.first_unknown[node])
+            springs[[x, x + 1], [x, x + 1]] += stiffness
+        squares = eigh(springs, rotor.mass, eigvals_only=True)[: 2 * count]
+        values.append(np.sqrt(np.maximum(squares, 0.0)))
+    floor = 1e-6 * float(values[1][-1])
+    return float(np.max(np.abs(values[0] - values[1]) / np.maximum(values[1], floor)))
+
+
+@dataclass(frozen=True)
+class _BothPlanes:
+    """From matrices of one plane, on u, du/dz at each node from the left, to the rotor's.
+
+    In the plane of x: u = x, slope = theta_y; in that of y: u = y, slope = -theta_x. Along the
+    shaft the slope is d/ds, s from the left, so that it changes its sign where z runs to the left.
+    """
+
+    nodes: int
+    sign: float
+
+    @property
+    def planes(self) -> tuple[Array, Array]:
+        """Matrices (4n, 2n) from the unknowns of a plane to the rotor's."""
+        x, y = np.zeros((2, 4, 2))
+        x[0, 0], x[3, 1] = 1.0, self.sign
+        y[1, 0], y[2, 1] = 1.0, -self.sign
+        eye = np.eye(self.nodes)
+        return np.kron(eye, x), np.kron(eye, y)
+
+    def alike(self, plane: Array) -> Array:
+        """Same matrix in both planes."""
+        x, y = self.planes
+        return x @ plane @ x.T + y @ plane @ y.T
+
+    def crossed(self, plane: Array) -> Array:
+        """Plus the matrix in the rows of x on y, minus it in those of y on x."""
+        x, y = self.planes
+        return x @ plane @ y.T - y @ plane @ x.T
+
+
+def nearest_node(nodes: Array, place: float) -> int:
+    """Number of the node at `place` [m]."""
+    return int(np.abs(nodes - place).argmin())
+
+
+def _merged(places: Sequence[float], length: float) -> list[float]:
+    """Ascending places, those that nearly coincide once."""
+    found: list[float] = []
+    for place in sorted(places):
+        if not found or place - found[-1] > _SAME_PLACE * length:
+            found.append(place)
+    return found
+
+
+def with_unbalance(rotor: Rotor, planes: Sequence[tuple[float, float, float]]) -> Rotor:
+    """Rotor with unbalances at places: (position [m], mass times radius [kg m], phase [rad])."""
+    positions = np.array([node.position for node in rotor.nodes])
+    unbalance = np.array(rotor.unbalance)
+    for at, amount, phase in planes:
+        unbalance[nearest_node(positions, at)] += amount * np.exp(1j * phase)
+    return replace(rotor, unbalance=unbalance)
