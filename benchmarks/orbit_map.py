@@ -37,9 +37,9 @@ from rotorsim.orbit import (
     film_force_map,
     find_equilibrium,
     loaded_film,
-    rigid_rotor,
     simulate,
 )
+from rotorsim.rotor import Rotor
 
 SPEED, LOAD, MASS = 12000.0 * math.pi / 30.0, 1500.0, 135.0
 DIRECT_REVOLUTIONS = 20
@@ -81,7 +81,7 @@ def main() -> None:
     place = find_equilibrium(film.force, (LOAD, 0.0), SPEED)
     problem = OrbitProblem(
         film.force,
-        rigid_rotor(MASS),
+        Rotor.rigid(MASS),
         SpeedSchedule.constant(SPEED, DIRECT_REVOLUTIONS),
         static_load=(LOAD, 0.0),
         equilibrium=place,

@@ -33,11 +33,11 @@ from rotorsim.orbit import (
     linearize_force,
     loaded_film,
     operating_film,
-    rigid_rotor,
     simulate,
     steady_part,
 )
 from rotorsim.orbit.short_bearing import short_bearing_impedance
+from rotorsim.rotor import Rotor
 
 SPEED, LOAD, MASS = 12000.0 * math.pi / 30.0, 1500.0, 135.0
 RADIUS, CLEARANCE, VISCOSITY = 0.025, 50e-6, 0.02
@@ -59,7 +59,7 @@ def whirl(force: BearingForce, mass: float, kick: float, turns: float, **changes
     return simulate(
         OrbitProblem(
             force,
-            rigid_rotor(mass),
+            Rotor.rigid(mass),
             SpeedSchedule.constant(SPEED, turns),
             initial_displacement=(kick * CLEARANCE, 0.0),
             **options,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 from .errors import InputError
@@ -43,3 +44,22 @@ def check_number(value: object, key: str, unit: str) -> None:
             key=key,
             value=value if isinstance(value, (str, bytes)) else type(value).__name__,
         )
+
+
+def above_zero(prefix: str, **values: float) -> None:
+    """Refuse values that are not finite and above zero; their keys are `prefix` and name.
+
+    Raises
+    ------
+    InputError
+    """
+    for name, value in values.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise InputError("must be above 0", key=f"{prefix}.{name}", value=value)
+
+
+def not_negative(prefix: str, **values: float) -> None:
+    """Refuse values that are not finite or below zero, as `above_zero`."""
+    for name, value in values.items():
+        if not (math.isfinite(value) and value >= 0.0):
+            raise InputError("must be 0 or more", key=f"{prefix}.{name}", value=value)

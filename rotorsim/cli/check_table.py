@@ -130,4 +130,4 @@ def _operation(scenario: Scenario, one: dict[str, Any]) -> Iterator[tuple[str, s
     if scenario.rotor is not None:
         ratio = one["weight_to_load"]
         weight = "" if ratio is None else f", weight {number(ratio, 3)} times the load"
-        yield "rotor mass per bearing", f"{number(scenario.rotor.mass)} kg{weight}"
+        yield "rotor mass per bearing", f"{number(scenario.rotor.total_mass)} kg{weight}"

@@ -106,9 +106,8 @@ def _quantity(text: str | None, kind: str, key: str, example: str) -> float | No
 
 
 def _mass(scenario: Scenario, text: str | None) -> float:
-    from ..model.rotor import rigid_mass
-
-    mass = wanted_mass(text) or rigid_mass(scenario.rotor)
+    own = None if scenario.rotor is None else scenario.rotor.rigid_mass
+    mass = wanted_mass(text) or own
     if mass is None:
         raise InputError('is missing: a rigid rotor, e.g. "900 kg"', key="--mass")
     return mass

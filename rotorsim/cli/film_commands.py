@@ -50,7 +50,7 @@ def check(output: Output, scenario: ScenarioArgument) -> int:
 
     loaded = load_scenario(scenario)
     top = float(loaded.speeds[-1])
-    mass = None if loaded.rotor is None else loaded.rotor.mass
+    mass = None if loaded.rotor is None else loaded.rotor.total_mass
     cases: list[dict[str, Any]] = []
     warnings: list[str] = []
     for case in loaded.cases():

@@ -223,8 +223,9 @@ def _plane(
         table = table if work.model is None else table.select(thermal_model=work.model)
         own = _scenario_of(work.output, source, table)
         fixed = {**values, **{n: [v] for n, v in held.items() if n in ("speed", "mass")}}
-        if "mass" not in fixed and "mass" not in axes and own is not None and own.rotor is not None:
-            fixed["mass"] = [own.rotor.mass]
+        rotor = None if own is None else own.rotor
+        if "mass" not in fixed and "mass" not in axes and rotor and rotor.rigid_mass:
+            fixed["mass"] = [rotor.rigid_mass]
         plane = plane_of_table(table, x, y, fixed, held, cells=work.cells)
         return plane, str(table.dataset.attrs.get("title", source.stem))
     scenario = load_scenario(source)
@@ -309,7 +310,6 @@ def _sample_progress(output: Output) -> Iterator[Callable[[int, int], None] | No
 
 def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> int:
     from ..bearing.doubts import doubts
-    from ..machine.over_speed import RigidShaft
     from ..show.stability_figures import campbell_figures
     from ..study.stability import campbell_curves, stability_curves
     from .stability_results import branches_table, curve_row, modes_table, threshold_table
@@ -321,15 +321,17 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
     rotor = wanted_rotor(scenario, *rotor_texts)
     table = _solved(work, source, scenario) if stored is None else stored
     table = table if work.model is None else table.select(thermal_model=work.model)
-    mass = rotor.mass if isinstance(rotor, RigidShaft) else None
     curves = stability_curves(table, rotor)
     found = campbell_curves(table, rotor, modes) if rotor is not None else [None] * len(curves)
     shown = [one for one in found if one is not None]
     document = {
-        "mass": mass,
-        "rotor": None if rotor is None else type(rotor).__name__,
+        "mass": None if rotor is None else rotor.rigid_mass,
+        "rotor": None if rotor is None else rotor.kind,
         "curves": [curve_row(*pair) for pair in zip(curves, found, strict=True)],
-        "doubts": doubts(table) if scenario is None else [],  # coefficients from elsewhere
+        "doubts": [
+            *(doubts(table) if scenario is None else ()),  # coefficients from elsewhere
+            *(rotor.doubts() if rotor is not None else ()),
+        ],
     }
 
     def parts() -> list:

@@ -15,7 +15,7 @@ from .options import file_or_shipped
 
 if TYPE_CHECKING:
     from ..files.scenario import Scenario, ToleranceSettings
-    from ..machine.over_speed import RotorOnFilm
+    from ..rotor import Rotor
 
 _ROTOR, _MAP, _TOLERANCES = "Rotor", "Map over two inputs", "Tolerances"
 
@@ -280,11 +280,10 @@ def wanted_rotor(
     file: Path | None,
     nodes: str | None,
     dofs: int | None,
-) -> RotorOnFilm | None:
+) -> Rotor | None:
     """Rotor of the options, else the scenario's; None without either."""
-    from ..machine.over_speed import JeffcottShaft, RigidShaft
-    from ..machine.rotor import load_rotor
-    from ..study.stability import rotor_on_film
+    from ..files.rotors import load_rotor
+    from ..rotor import Rotor
     from ..units import parse_quantity
 
     if file is not None:
@@ -299,16 +298,24 @@ def wanted_rotor(
     if shaft_stiffness is not None:
         key = "--shaft-stiffness"
         stiffness = parse_quantity(shaft_stiffness, "stiffness", key=key, example="200 MN/m")
-        own = None if scenario is None or scenario.rotor is None else scenario.rotor.mass
-        disc = own if mass is None else mass
-        if disc is None:
-            raise InputError('needs the disc: --mass "900 kg"', key=key)
         if stiffness <= 0.0:
             raise InputError("must be above 0", key=key, value=shaft_stiffness)
-        return JeffcottShaft(disc, stiffness)
+        return _jeffcott(None if scenario is None else scenario.rotor, mass, stiffness)
     if mass is not None:
-        return RigidShaft(mass)
-    return None if scenario is None else rotor_on_film(scenario.rotor)
+        return Rotor.rigid(mass)
+    return None if scenario is None else scenario.rotor
+
+
+def _jeffcott(own: Rotor | None, mass: float | None, stiffness: float) -> Rotor:
+    """Jeffcott rotor of the options: `mass` is the disc's, what is not given the scenario's."""
+    from ..rotor import Rotor
+
+    parts = {} if own is None else dict(own.parameters)
+    if mass is None and own is None:
+        raise InputError('needs the disc: --mass "900 kg"', key="--shaft-stiffness")
+    if mass is not None or own is None or own.kind != "jeffcott":
+        return Rotor.jeffcott(parts["mass"] if mass is None else mass, stiffness)
+    return Rotor.jeffcott(**(parts | {"shaft_stiffness": stiffness}))
 
 
 def node_list(text: str | None) -> tuple[int, ...] | None:

@@ -49,15 +49,15 @@ def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
 
 def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """The least stable oscillating mode over speed."""
-    from ..study.stability import whirl_word
-
     head = ("rpm", "mode", "Hz", "f/rev", "damping ratio", "log decrement", "growth 1/s", "whirl")
     table = grid(f"Least stable mode: {curve_title(curve)}", *head)
     found = modes.branches
+    whirl = found.whirl
     if not found.eigenvalues.shape[1]:
         return table
+    least = found.least_stable
     for i, speed in enumerate(found.parameter):
-        k = int(np.argmax(found.eigenvalues[i].real))
+        k = int(least[i])
         frequency = float(found.damped_frequency[i, k])
         table.add_row(
             f"{speed * RPM:.0f}",
@@ -65,18 +65,17 @@ def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
             number(frequency / (2.0 * math.pi)),
             number(frequency / float(speed), 3),
             number(float(found.damping_ratio[i, k]), 3),
-            number(float(found.log_decrement[i, k]), 3),
+            number(float(found.logarithmic_decrement[i, k]), 3),
             number(float(found.eigenvalues[i, k].real)),
-            whirl_word(float(modes.sense[i, k])),
+            str(whirl[i, k]),
         )
     return table
 
 
 def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """Every branch at the highest speed."""
-    from ..study.stability import whirl_word
-
     found = modes.branches
+    whirl = found.whirl
     top = f"{found.parameter[-1] * RPM:.0f} rpm"
     head = ("mode", "Hz", "f/rev", "damping ratio", "log decrement", "whirl")
     table = grid(f"Modes at {top}: {curve_title(curve)}", *head)
@@ -87,8 +86,8 @@ def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
             number(frequency / (2.0 * math.pi)),
             number(frequency / float(found.parameter[-1]), 3),
             number(float(found.damping_ratio[-1, k]), 3),
-            number(float(found.log_decrement[-1, k]), 3),
-            whirl_word(float(modes.sense[-1, k])),
+            number(float(found.logarithmic_decrement[-1, k]), 3),
+            str(whirl[-1, k]),
         )
     return table
 
@@ -100,7 +99,8 @@ def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell])
         if not found.thresholds:
             known = found.growth[np.isfinite(found.growth)]
             verdict = "stable throughout" if known.size and known.max() < 0.0 else "-"
-            verdict = "unstable throughout" if known.size and known.min() >= 0.0 else verdict
+            verdict = "unstable throughout" if known.size and known.min() > 0.0 else verdict
+            verdict = "undamped throughout" if known.size and not known.any() else verdict
             table.add_row(curve_title(curve), "none", "", "", verdict)
         for one in found.thresholds:
             table.add_row(

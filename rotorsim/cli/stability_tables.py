@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..study.wording import RPM, VERDICTS, curve_title, number, thresholds_text
+from ..study.wording import RPM, VERDICTS, curve_title, number, thresholds_text, verdict_word
 from .tables import grid
 
 if TYPE_CHECKING:
@@ -25,17 +25,16 @@ def curve_table(curve: StabilityCurve) -> Table:
     if curve.eigenvalues is not None:
         head += ["growth 1/s", "whirl rpm"] if rigid else ["verdict", "growth 1/s", "whirl rpm"]
     table = grid(curve_title(curve), *head)
+    rates = curve.growth_rate
     for index, speed in enumerate(curve.speed):
         cells = [f"{speed * RPM:.0f}"]
         if rigid:
             cells += _threshold_cells(curve, index)
-        if curve.eigenvalues is not None:
-            slowest = curve.eigenvalues[index, 0]
+        if curve.eigenvalues is not None and rates is not None:
+            slowest, rate = curve.eigenvalues[index, 0], float(rates[index])
             if not rigid:
-                known = math.isfinite(slowest.real)
-                said = "stable" if slowest.real < 0.0 else "unstable"
-                cells.append(said if known else VERDICTS[""])
-            cells += [number(slowest.real), number(abs(slowest.imag) * RPM)]
+                cells.append(verdict_word(rate) if math.isfinite(rate) else VERDICTS[""])
+            cells += [number(rate), number(abs(slowest.imag) * RPM)]
         table.add_row(*cells)
     return table
 

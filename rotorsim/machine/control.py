@@ -1,4 +1,4 @@
-"""Response and control of a rotor on its film: receptance, locus, margins, LQR and PD."""
+"""Response and control of a rotor on its film: receptance, margins, LQR and PD."""
 
 from __future__ import annotations
 
@@ -9,10 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..bearing.interpolation import Coefficients
-from ..bearing.table import CoefficientTable
 from ..errors import InputError
 from .matrices import state_matrix
-from .modes import Branches, track_modes
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -38,55 +36,12 @@ def receptance(system: control.StateSpace, frequency: ArrayLike) -> ComplexArray
     return response.astype(complex)
 
 
-def unbalance_response(
-    table: CoefficientTable,
-    mass: float,
-    unbalance: float,
-    speed: ArrayLike | None = None,
-    **choices: object,
-) -> ComplexArray:
-    """Complex amplitudes (n, 2) of x and y [m] of the rigid rotor, x = Re(X exp(i omega t)).
-
-    Parameters
-    ----------
-    table : CoefficientTable
-    mass, unbalance : float
-        Per bearing [kg], [kg m].
-    speed : (n,) array, optional
-        [rad/s]; the tabulated ones by default.
-    **choices
-        As for `CoefficientTable.select`.
-
-    Notes
-    -----
-    (K + i omega C - m omega^2) X = u omega^2 (1, -i): the force turns from x to y.
-    """
-    omega = np.atleast_1d(np.asarray(table.speeds if speed is None else speed, dtype=float))
-    stiffness, damping = table.interpolator(**choices)(omega)
-    w = omega[:, None, None]
-    dynamic = stiffness + 1j * w * damping - mass * w**2 * np.eye(2)
-    force = unbalance * omega[:, None] ** 2 * np.array([1.0, -1.0j])
-    return np.asarray(np.linalg.solve(dynamic, force[..., None])[..., 0], dtype=complex)
-
-
 def step_response(
     system: control.StateSpace, force: float, entry: int = 0, duration: float | None = None
 ) -> tuple[Array, Array]:
     """Times [s] and displacements (n_output, n) [m] after a force [N] sets in at one input."""
     response = control.step_response(system, T=duration, input=entry, squeeze=False)
     return np.asarray(response.time), force * np.asarray(response.outputs)[:, 0, :]
-
-
-def locus_over_mass(coefficients: Coefficients, masses: ArrayLike) -> Branches:
-    """Eigenvalue branches over the mass per bearing [kg]; `Branches.parameter` is the mass."""
-    k, c = coefficients.stiffness, coefficients.damping
-    return track_modes(lambda m: state_matrix(k, c, m), masses)
-
-
-def locus_over_damping(coefficients: Coefficients, mass: float, added: ArrayLike) -> Branches:
-    """Eigenvalue branches over isotropic damping added at the journal [N s/m]."""
-    k, c = coefficients.stiffness, coefficients.damping
-    return track_modes(lambda d: state_matrix(k, c + d * np.eye(2), mass), added)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +102,7 @@ def design_lqr(
     system : control.StateSpace
         Its inputs are the actuator's forces, its outputs the displacements to be kept small: the
         rigid rotor of `state_space`, or some nodes of another rotor, for example
-        ``rotor_state_space(...)[["displacement_4", "displacement_5"], ["force_4", "force_5"]]``.
+        ``state_space(machine, speed=...)[outputs, inputs]`` with the signals' names.
     displacement_scale, velocity_scale, force_scale : float
         Acceptable displacement [m], velocity [m/s] and force [N].
     max_force : float
@@ -198,8 +153,8 @@ def _design_lqr_of_outputs(
     if 2 * system.ninputs >= system.nstates or not system.noutputs:
         raise InputError(
             f"has {system.ninputs} inputs and {system.nstates} states: pick the actuator's node, "
-            'for example system[["displacement_4", "displacement_5"], ["force_4", "force_5"]] of '
-            "rotor_state_space",
+            'for example system[["disc_displacement_x", "disc_displacement_y"], ["disc_force_x", '
+            '"disc_force_y"]]',
             key="system",
         )
     weight = c.T @ c / displacement**2

@@ -1,4 +1,4 @@
-"""State matrices as plain arrays: the form that maps, mode tracking and integrators use."""
+"""State matrices and their eigenvalues, each with its own accuracy."""
 
 from __future__ import annotations
 
@@ -8,6 +8,12 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_SINGULAR = 1e12
+"""Condition number from which the damping of massless unknowns counts as singular."""
+_ROUNDINGS = 10.0
+"""Size of the error of the eigenvalue solver and of the matrices, in roundings of their norm."""
 
 
 def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
@@ -43,11 +49,91 @@ def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> A
     return a
 
 
-def second_order_state_matrix(mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> Array:
-    """State matrix (2n, 2n) of M q'' + D q' + K q = 0 on (q, q'); M must be regular."""
-    m = np.asarray(mass, dtype=float)
-    n = m.shape[0]
-    a = np.zeros((2 * n, 2 * n))
-    a[:n, n:] = np.eye(n)
-    a[n:] = -np.linalg.solve(m, np.hstack([np.asarray(stiffness), np.asarray(damping)]))
-    return a
+def massive_unknowns(mass: Array) -> NDArray[np.intp]:
+    """Indices of the unknowns with inertia, of (..., n, n) mass matrices."""
+    return np.flatnonzero(np.any(mass != 0.0, axis=-1).reshape(-1, mass.shape[-1]).any(axis=0))
+
+
+def first_order(mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> tuple[Array, Array]:
+    """State matrix and input matrix of M q'' + D q' + K q = f.
+
+    Parameters
+    ----------
+    mass, damping, stiffness : (..., n, n) arrays
+        Unknowns without mass, whose rows of M are zero, must be damped.
+
+    Returns
+    -------
+    state_matrix : (..., n + m, n + m) array
+        Acting on all n displacements, then the velocities of the m unknowns with mass.
+    input_matrix : (..., n + m, n) array
+        For forces on each unknown.
+
+    Raises
+    ------
+    InputError
+        The damping of the massless unknowns is singular: their motion is not determined.
+
+    Notes
+    -----
+    The rows b of massless unknowns read q_b' = D_bb^-1 (f_b - K_b q - D_ba v): states of first
+    order. Where a matrix is not finite the result is not either.
+    """
+    m, d, k = np.broadcast_arrays(*(np.asarray(p, dtype=float) for p in (mass, damping, stiffness)))
+    n = m.shape[-1]
+    heavy = massive_unknowns(m)
+    light = np.setdiff1d(np.arange(n), heavy)
+    size = n + heavy.size
+    a, b = np.zeros((*m.shape[:-2], size, size)), np.zeros((*m.shape[:-2], size, n))
+    a[..., heavy, n + np.arange(heavy.size)] = 1.0
+    known = np.isfinite(m + d + k).all(axis=(-2, -1))
+    # The damping's action on the massless unknowns' velocities, given by the other states.
+    pull, push = np.concatenate([k, d[..., heavy]], axis=-1), np.broadcast_to(np.eye(n), k.shape)
+    if light.size:
+        own = np.where(known[..., None, None], d[..., light[:, None], light], np.eye(light.size))
+        if np.any(np.linalg.cond(own) > _SINGULAR):
+            raise InputError(
+                "singular: massless nodes need damping in every direction; give a mass "
+                "(journal_mass)", key="damping",
+            )  # fmt: skip
+        rate = np.linalg.solve(own, -pull[..., light, :])
+        gain = np.linalg.solve(
+            own, np.broadcast_to(np.eye(n)[light], (*own.shape[:-2], light.size, n))
+        )
+        a[..., light, :], b[..., light, :] = rate, gain
+        pull = pull + d[..., light] @ rate
+        push = push - d[..., light] @ gain
+    inertia = m[..., heavy[:, None], heavy]
+    inertia = np.where(known[..., None, None], inertia, np.eye(heavy.size))
+    a[..., n:, :] = -np.linalg.solve(inertia, pull[..., heavy, :])
+    b[..., n:, :] = np.linalg.solve(inertia, push[..., heavy, :])
+    a[~known], b[~known] = np.nan, np.nan
+    return a, b
+
+
+def eigenvalues_with_accuracy(a: Array) -> tuple[ComplexArray, ComplexArray, Array]:
+    """Eigenvalues of one state matrix, its right eigenvectors, and each eigenvalue's accuracy.
+
+    Returns
+    -------
+    eigenvalues : (k,) complex array
+    vectors : (k, k) complex array
+        Columns, of any length.
+    accuracy : (k,) array
+        Estimated bound of the absolute error.
+
+    Notes
+    -----
+    After balancing, the error of an eigenvalue is some roundings of the matrix' norm over the
+    cosine between its left and its right eigenvector (Golub & Van Loan, Matrix Computations,
+    7.2.2). A free direction is a double eigenvalue zero with one eigenvector: the computed cosine
+    is then of the size of the square root of the rounding, and so is the accuracy.
+    """
+    from scipy.linalg import eig, matrix_balance
+
+    balanced, (scale, _) = matrix_balance(a, permute=False, separate=True)
+    values, left, right = eig(balanced, left=True, right=True, check_finite=False)
+    cosine = np.abs(np.sum(left.conj() * right, axis=0))
+    rounding = _ROUNDINGS * np.finfo(float).eps * np.linalg.norm(balanced)
+    accuracy = rounding / np.maximum(cosine, np.finfo(float).eps)
+    return values.astype(complex), (scale[:, None] * right).astype(complex), accuracy

@@ -1,7 +1,8 @@
-"""Rotors on bearings as python-control state spaces with named signals."""
+"""Machines as python-control state spaces with named signals."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -10,114 +11,74 @@ import numpy as np
 
 from ..arguments import check_number
 from ..errors import InputError
-from .jeffcott import jeffcott_matrices
-from .matrices import state_matrix
+from ..rotor import Rotor
+from .machine import Machine
+from .matrices import first_order, massive_unknowns
+from .support import ConstantSupport
 
 if TYPE_CHECKING:
     from ..bearing.interpolation import Coefficients
-    from .rotor import GeneralRotor
 
 
-def state_space(coefficients: Coefficients, mass: float, name: str = "rotor") -> control.StateSpace:
-    """Rigid rotor m x'' + C x' + K x = F on one bearing's film (Dal Eq. 21).
+def state_space(
+    plant: Machine | Coefficients,
+    mass: float | None = None,
+    speed: float | None = None,
+    name: str = "rotor",
+) -> control.StateSpace:
+    """State space of a machine at one speed, or of a rigid rotor on one bearing's film.
 
     Parameters
     ----------
-    coefficients : Coefficients
-    mass : float
-        Per bearing [kg].
+    plant : Machine or Coefficients
+    mass : float, optional
+        Of the rigid rotor per bearing [kg], with `Coefficients` (Dal Eq. 21).
+    speed : float, optional
+        [rad/s], with a `Machine`.
     name : str
 
     Returns
     -------
     control.StateSpace
-        States ``x``, ``y`` [m], ``vx``, ``vy`` [m/s]; inputs ``force_x``, ``force_y`` [N] on the
-        journal; outputs ``displacement_x``, ``displacement_y`` [m]. Load frame, about equilibrium.
+        About equilibrium. States: displacements, then velocities of all unknowns with mass; inputs
+        and outputs: force and displacement of every unknown of the rotor. The rigid rotor's are
+        called ``x``, ``y``, ``vx``, ``vy``; ``force_x``, ``force_y``; ``displacement_x``,
+        ``displacement_y``. Those of named nodes carry the name: ``disc_x``, ``disc_vx``,
+        ``disc_force_x``, ``disc_displacement_x``.
 
     Raises
     ------
     InputError
-        The mass is no number, or not above zero.
+        The mass or the speed is missing or no number, or massless nodes are not damped.
     """
-    check_number(mass, "mass", "kg")
-    _positive(mass, "mass")
-    a = state_matrix(coefficients.stiffness, coefficients.damping, mass)
-    b = np.zeros((4, 2))
-    b[2:] = np.eye(2) / mass
+    if not isinstance(plant, Machine):
+        check_number(mass, "mass", "kg")
+        film = ConstantSupport(plant.stiffness, plant.damping)
+        plant, speed = Machine(Rotor.rigid(float(mass or 0.0)), [(0, film)]), plant.speed
+    check_number(speed, "speed", "rad/s")
+    matrices = plant.matrices(float(speed or 0.0))
+    if not np.all(np.isfinite(matrices[2])):
+        raise InputError("a support has no coefficients here", key="speed", value=speed)
+    a, b = first_order(*matrices)
+    n, heavy = plant.rotor.size, massive_unknowns(matrices[0])
+    signals = [(_signal_name(node), unknown) for node, unknown in plant.unknowns]
+
+    def called(word: str, which: range | list[int]) -> list[str]:
+        return ["".join((signals[i][0], word, signals[i][1])) for i in which]
+
+    every = range(plant.size)
     return control.StateSpace(
-        a, b, np.eye(2, 4), np.zeros((2, 2)),
-        states=["x", "y", "vx", "vy"],
-        inputs=["force_x", "force_y"],
-        outputs=["displacement_x", "displacement_y"],
+        a, b[:, :n], np.eye(n, a.shape[0]), np.zeros((n, n)),
+        states=[*called("", every), *called("v", [int(i) for i in heavy])],
+        inputs=called("force_", range(n)),
+        outputs=called("displacement_", range(n)),
         name=name,
     )  # fmt: skip
 
 
-def jeffcott_state_space(
-    coefficients: Coefficients,
-    disc_mass: float,
-    shaft_stiffness: float,
-    journal_mass: float = 0.0,
-    shaft_damping: float = 0.0,
-    name: str = "jeffcott",
-) -> control.StateSpace:
-    """Symmetric flexible rotor: a disc at mid-span of a massless shaft on two like bearings.
-
-    Parameters
-    ----------
-    coefficients : Coefficients
-        Of one bearing.
-    disc_mass, shaft_stiffness, journal_mass, shaft_damping : float
-        Per bearing: half the disc [kg] and half the shaft's stiffness at mid-span [N/m]; the
-        journal's own mass [kg] may be zero; external damping at the disc [N s/m].
-    name : str
-
-    Returns
-    -------
-    control.StateSpace
-        States ``disc_x``, ``disc_y``, ``journal_x``, ``journal_y`` [m], ``disc_vx``, ``disc_vy``
-        [m/s] and, with a journal mass, ``journal_vx``, ``journal_vy``; inputs ``disc_force_x`` ...
-        ``journal_force_y`` [N]; outputs ``disc_displacement_x`` ... ``journal_displacement_y`` [m].
-
-    Raises
-    ------
-    InputError
-        A mass or stiffness is not above zero, or the damping matrix is singular with massless
-        journals (their motion is then not determined).
-    """
-    a, b = jeffcott_matrices(
-        coefficients.stiffness, coefficients.damping, disc_mass, shaft_stiffness, journal_mass,
-        shaft_damping,
-    )  # fmt: skip
-    states = ["disc_x", "disc_y", "journal_x", "journal_y"]
-    states += ["disc_vx", "disc_vy", "journal_vx", "journal_vy"][: a.shape[0] - 4]
-    return control.StateSpace(
-        a, b, np.eye(4, a.shape[0]), np.zeros((4, 4)),
-        states=states,
-        inputs=[f"{part}_force_{axis}" for part in ("disc", "journal") for axis in "xy"],
-        outputs=[f"{part}_displacement_{axis}" for part in ("disc", "journal") for axis in "xy"],
-        name=name,
-    )  # fmt: skip
-
-
-def rotor_state_space(
-    rotor: GeneralRotor, coefficients: Coefficients, name: str = "rotor"
-) -> control.StateSpace:
-    """General rotor on like bearings at its bearing nodes; gyroscopic terms at the film's speed.
-
-    States ``q0`` ... [m or rad] and ``v0`` ...; inputs ``force_0`` ...; outputs
-    ``displacement_0`` ..., numbered like the rotor's degrees of freedom.
-    """
-    a = rotor.state_matrix(coefficients)
-    n = rotor.mass.shape[0]
-    b = np.vstack([np.zeros((n, n)), np.linalg.inv(rotor.mass)])
-    return control.StateSpace(
-        a, b, np.eye(n, 2 * n), np.zeros((n, n)),
-        states=[f"{letter}{i}" for letter in "qv" for i in range(n)],
-        inputs=[f"force_{i}" for i in range(n)],
-        outputs=[f"displacement_{i}" for i in range(n)],
-        name=name,
-    )  # fmt: skip
+def _signal_name(node: str) -> str:
+    """Prefix of a node's signals, of letters, digits and underscores."""
+    return re.sub(r"\W+", "_", node) + "_" if node else ""
 
 
 @dataclass(frozen=True)
@@ -144,8 +105,3 @@ def poles(system: control.StateSpace) -> list[Pole]:
     return [
         Pole(complex(s), abs(s.imag), float(-s.real / abs(s)) if s != 0.0 else 0.0) for s in values
     ]
-
-
-def _positive(value: float, key: str) -> None:
-    if not (np.isfinite(value) and value > 0.0):
-        raise InputError("must be above 0", key=key, value=value)

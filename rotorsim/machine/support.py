@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError, OutOfRangeError
 
 if TYPE_CHECKING:
-    from ..table import CoefficientInterpolator
+    from ..bearing.interpolation import CoefficientInterpolator
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -185,7 +185,7 @@ class MatrixTable(Support):
         return self.table_speeds
 
     @cached_property
-    def _curve(self):  # noqa: ANN202
+    def _curve(self):
         from scipy.interpolate import PchipInterpolator
 
         stacked = np.stack([self.stiffness, self.damping, self.mass], axis=1)

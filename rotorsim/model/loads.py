@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class StepForce:
-    """A force (fx, fy) [N] on a station from `start` until `stop` [s]."""
+    """A force (fx, fy) [N] on a node from `start` until `stop` [s]."""
 
     force: tuple[float, float]
     start: float = 0.0
     stop: float = math.inf
-    station: int = 0
+    node: int = 0
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class HarmonicForce:
     phase: tuple[float, float] = (0.0, 0.0)
     start: float = 0.0
     stop: float = math.inf
-    station: int = 0
+    node: int = 0
 
 
 @dataclass(frozen=True)

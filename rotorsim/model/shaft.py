@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..arguments import above_zero, not_negative
 from ..errors import InputError
 
 
@@ -30,15 +31,15 @@ class Material:
     shear_modulus: float | None = None
 
     def __post_init__(self) -> None:
-        _above_zero(youngs_modulus=self.youngs_modulus)
-        _not_negative(density=self.density)
+        above_zero("rotor", youngs_modulus=self.youngs_modulus)
+        not_negative("rotor", density=self.density)
         if not -1.0 < self.poisson_ratio <= 0.5:
             raise InputError(
                 "must lie above -1 and be at most 0.5", key="rotor.poisson_ratio",
                 value=self.poisson_ratio,
             )  # fmt: skip
         if self.shear_modulus is not None:
-            _above_zero(shear_modulus=self.shear_modulus)
+            above_zero("rotor", shear_modulus=self.shear_modulus)
             ratio = self.youngs_modulus / (2.0 * self.shear_modulus) - 1.0
             if not -1.0 < ratio <= 0.5:
                 raise InputError(
@@ -53,6 +54,9 @@ class Material:
         if self.shear_modulus is not None:
             return self.shear_modulus
         return self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
+
+
+STEEL = Material()
 
 
 @dataclass(frozen=True)
@@ -91,10 +95,10 @@ class Section:
     stiffness: bool = True
 
     def __post_init__(self) -> None:
-        _above_zero(length=self.length, outer_diameter=self.outer_diameter)
-        _not_negative(inner_diameter=self.inner_diameter)
+        above_zero("rotor.section", length=self.length, outer_diameter=self.outer_diameter)
+        not_negative("rotor.section", inner_diameter=self.inner_diameter)
         right = {"inner_diameter_right": self.inner_right, "outer_diameter_right": self.outer_right}
-        _not_negative(**right)
+        not_negative("rotor.section", **right)
         inner, outer = self.inner_diameter, self.outer_diameter
         if not (inner < outer and self.inner_right < self.outer_right):
             raise InputError(
@@ -142,10 +146,10 @@ class Disc:
     name: str = ""
 
     def __post_init__(self) -> None:
-        for name in ("mass", "polar_inertia", "transverse_inertia"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value >= 0.0):
-                raise InputError("must be 0 or more", key=f"rotor.disc.{name}", value=value)
+        not_negative(
+            "rotor.disc", mass=self.mass, polar_inertia=self.polar_inertia,
+            transverse_inertia=self.transverse_inertia,
+        )  # fmt: skip
 
     @classmethod
     def from_dimensions(
@@ -158,7 +162,7 @@ class Disc:
         name: str = "",
     ) -> Disc:
         """Disc of constant width [m, kg/m^3]."""
-        _above_zero(outer_diameter=outer_diameter, width=width, density=density)
+        above_zero("rotor.disc", outer_diameter=outer_diameter, width=width, density=density)
         if not 0.0 <= inner_diameter < outer_diameter:
             raise InputError(
                 "must lie between 0 and the outer diameter", key="rotor.disc.inner_diameter",
@@ -168,15 +172,3 @@ class Disc:
         mass = density * width * math.pi / 4.0 * (outer_diameter**2 - inner_diameter**2)
         polar = mass * squares / 8.0
         return cls(at, mass, polar, 0.5 * polar + mass * width**2 / 12.0, name)
-
-
-def _above_zero(**values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise InputError("must be above 0", key=f"rotor.{name}", value=value)
-
-
-def _not_negative(**values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value >= 0.0):
-            raise InputError("must be 0 or more", key=f"rotor.{name}", value=value)

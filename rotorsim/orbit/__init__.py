@@ -31,7 +31,6 @@ from .modes import Growth, Modes, fit_modes, growth_rate
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import Method, OrbitProblem
 from .recognition import Recognition, recognise, steady_part
-from .rotor import RotorModel, jeffcott_rotor, rigid_rotor
 from .spectrum import (
     Cascade,
     Ellipse,
@@ -66,7 +65,6 @@ __all__ = [
     "OrbitProblem",
     "OrbitStatus",
     "Recognition",
-    "RotorModel",
     "ShortBearingForce",
     "SolvedFilmForce",
     "Spectrum",
@@ -85,7 +83,6 @@ __all__ = [
     "fit_modes",
     "growth_rate",
     "initial_growth",
-    "jeffcott_rotor",
     "linearize_force",
     "loaded_film",
     "minimum_film",
@@ -94,7 +91,6 @@ __all__ = [
     "poincare_points",
     "prepare_map",
     "recognise",
-    "rigid_rotor",
     "simulate",
     "simulate_linear",
     "simulate_pieces",

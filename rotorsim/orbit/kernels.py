@@ -202,8 +202,9 @@ def motion_rates(
 ) -> Array:
     """State rates from a known film force on the journal.
 
-    state: displacements (2n), velocities (2n), controller states; rotor: inverse mass, damping,
-    stiffness, gyroscopic matrix; unbalance: (n, 2) mass times radius and phase; shapes, times: see
+    state: displacements, velocities, controller states; rotor: inverse mass, damping, stiffness,
+    gyroscopic, circulatory matrix; unbalance: (n_nodes, 3) mass times radius, phase, place of x;
+    shapes, times: see
     `loads.pack_loads`; controller: blocks [[A, B], [C, D]].
     """
     size = rotor.shape[1]
@@ -214,8 +215,9 @@ def motion_rates(
     for k in range(unbalance.shape[0]):
         if unbalance[k, 0] != 0.0:
             c, s = math.cos(phi + unbalance[k, 1]), math.sin(phi + unbalance[k, 1])
-            force[2 * k] += unbalance[k, 0] * (w * w * c + alpha * s)
-            force[2 * k + 1] += unbalance[k, 0] * (w * w * s - alpha * c)
+            x = int(unbalance[k, 2])
+            force[x] += unbalance[k, 0] * (w * w * c + alpha * s)
+            force[x + 1] += unbalance[k, 0] * (w * w * s - alpha * c)
     _add_loads(t, force, shapes, times)
     extra = state.size - 2 * size
     if controller.shape[0] > 0:
@@ -223,7 +225,7 @@ def motion_rates(
     for i in range(size):
         for j in range(size):
             force[i] -= (rotor[1, i, j] + w * rotor[3, i, j]) * state[size + j]
-            force[i] -= rotor[2, i, j] * state[j]
+            force[i] -= (rotor[2, i, j] + w * rotor[4, i, j]) * state[j]
     for i in range(size):
         rates[i] = state[size + i]
         total = 0.0

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from ..rotor import Rotor
 from .forces import CoefficientsBySpeed, LinearForce, PositionBySpeed
 from .integrate import simulate
 from .orbit import Orbit
 from .problem import OrbitProblem
-from .rotor import rigid_rotor
 from .speed import SpeedSchedule
 
 
@@ -62,7 +62,7 @@ def simulate_linear(
     return simulate(
         OrbitProblem(
             LinearForce(coefficients, radial_clearance, equilibrium),
-            rigid_rotor(mass, unbalance),
+            Rotor.rigid(mass, unbalance),
             schedule,
             initial_displacement=initial_displacement,
             minimum_film=minimum_film,

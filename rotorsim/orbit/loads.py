@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
+from ..rotor import Rotor
 from . import kernels
-from .rotor import RotorModel
 
 Array = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class Controller:
         return cls(np.zeros((0, 0)), np.zeros((0, 4)), np.zeros((2, 0)), -gain, reference)
 
 
-def pack_loads(loads: Sequence[Load], rotor: RotorModel) -> tuple[Array, Array]:
+def pack_loads(loads: Sequence[Load], rotor: Rotor) -> tuple[Array, Array]:
     """Pack loads into arrays for the compiled right-hand side.
 
     Returns
@@ -75,38 +75,37 @@ def pack_loads(loads: Sequence[Load], rotor: RotorModel) -> tuple[Array, Array]:
     for shape, number, load in zip(shapes, numbers, loads, strict=True):
         match load:
             case StepForce():
-                _check_station(load.station, rotor)
-                shape[0, 2 * load.station : 2 * load.station + 2] = load.force
+                shape[0, _plane(load.node, rotor)] = load.force
                 number[:] = CONSTANT, load.start, load.stop, 0.0
             case HarmonicForce():
-                _check_station(load.station, rotor)
-                place = slice(2 * load.station, 2 * load.station + 2)
-                shape[:, place] = _cosine_and_sine(load.force, load.phase)
+                shape[:, _plane(load.node, rotor)] = _cosine_and_sine(load.force, load.phase)
                 number[:] = HARMONIC, load.start, load.stop, load.frequency
             case BaseMotion():
                 base = _cosine_and_sine(load.displacement, load.phase) * load.frequency**2
-                shape[:] = np.tile(base, rotor.stations) @ rotor.mass.T
+                shape[:] = [rotor.mass @ rotor.translation(part) for part in base]
                 number[:] = HARMONIC, load.start, load.stop, load.frequency
             case BaseShock():
-                pull = np.tile(np.asarray(load.acceleration), rotor.stations)
-                shape[0] = -rotor.mass @ pull
+                shape[0] = -rotor.mass @ rotor.translation(load.acceleration)
                 stop = load.start + load.duration
                 number[:] = HALF_SINE, load.start, stop, math.pi / load.duration
     return shapes, numbers
 
 
-def load_on_rotor(loads: Sequence[Load], rotor: RotorModel, t: Array) -> Array:
-    """Sum of the loads over all stations (n, 2) [N] at times t (n,)."""
+def load_on_rotor(loads: Sequence[Load], rotor: Rotor, t: Array) -> Array:
+    """Sum of the loads over all nodes (n, 2) [N] at times t (n,)."""
     shapes, numbers = pack_loads(loads, rotor)
     every = kernels.load_series(np.asarray(t, dtype=float), shapes, numbers)
-    return every.reshape(len(t), rotor.stations, 2).sum(axis=1)
+    return np.stack([every[:, rotor.first_unknown + axis].sum(axis=1) for axis in (0, 1)], axis=1)
 
 
-def _check_station(station: int, rotor: RotorModel) -> None:
-    if not 0 <= station < rotor.stations:
+def _plane(node: int, rotor: Rotor) -> slice:
+    """Place of a node's x and y."""
+    if not 0 <= node < len(rotor.nodes):
         raise InputError(
-            f"must be from 0 to {rotor.stations - 1}", key="orbit.load.station", value=station
+            f"must be from 0 to {len(rotor.nodes) - 1}", key="orbit.load.node", value=node
         )
+    first = int(rotor.first_unknown[node])
+    return slice(first, first + 2)
 
 
 def _cosine_and_sine(amplitude: tuple[float, float], phase: tuple[float, float]) -> Array:

@@ -68,11 +68,11 @@ class Orbit:
         Film force on the journal [N].
     load : (n, 2) array
         What varies in time on the rotor: steps, harmonics, the moving base; summed over the
-        stations, without static load and unbalance [N].
+        nodes, without static load and unbalance [N].
     actuator_force : (n, 2) array
         On the journal [N]; zero without an actuator.
-    displacements : (n, 2k) array
-        Of all k stations of the rotor [m]; the first two columns are x and y.
+    displacements : (n, k) array
+        Of all k unknowns of the rotor [m]; the first two columns are x and y.
     min_film : (n,) array
         Smallest film thickness [m]; c - e in a plain bearing.
     boundary : (m, 2) array

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model import Bearing
+from ..rotor import Rotor
 from .clearance import contact_boundary, minimum_film
 from .film_force import SolvedFilmForce
 from .forces import BearingForce, LinearForce
 from .loads import Controller, Load
-from .rotor import RotorModel
 from .speed import SpeedSchedule
 
 Array = NDArray[np.float64]
@@ -41,10 +41,11 @@ class OrbitProblem:
     Parameters
     ----------
     force : BearingForce
-    rotor : RotorModel
+    rotor : Rotor
+        The film carries its first node; every node has x and y with mass.
     schedule : SpeedSchedule
     static_load : (float, float)
-        Shared out over the stations as their masses [N]; (0, 0) switches it off.
+        Shared out over the nodes as their masses [N]; (0, 0) switches it off.
     initial_displacement : (float, float)
         Of the journal from `equilibrium` [m].
     initial_velocity : (float, float)
@@ -79,7 +80,7 @@ class OrbitProblem:
     """
 
     force: BearingForce
-    rotor: RotorModel
+    rotor: Rotor
     schedule: SpeedSchedule
     static_load: tuple[float, float] = (0.0, 0.0)
     initial_displacement: tuple[float, float] = (0.0, 0.0)
@@ -125,6 +126,16 @@ class OrbitProblem:
         clearance = self.force.radial_clearance
         if not (math.isfinite(clearance) and clearance > 0.0):
             raise InputError("must be above 0", key="bearing.radial_clearance", value=clearance)
+        if self.rotor.bearing_nodes != (0,):
+            raise InputError(
+                "the film must carry the first node and no other", key="rotor.bearing_nodes",
+                value=self.rotor.bearing_nodes,
+            )  # fmt: skip
+        if np.linalg.eigvalsh(self.rotor.mass)[0] <= 0.0:
+            raise InputError(
+                "must be positive definite: in time every node needs a mass, journals too",
+                key="rotor.mass",
+            )
         if not 0.0 <= self.minimum_film < clearance:
             raise InputError(
                 f"must lie between 0 and the clearance of {clearance:g} m",

@@ -20,14 +20,13 @@ FilmSeries = Callable[[Array], Array]
 
 
 def static_load(problem: OrbitProblem) -> Array:
-    """Share the static load out over the stations as their masses, (2n,)."""
-    mass = problem.rotor.mass
-    pull = np.tile(np.asarray(problem.static_load), problem.rotor.stations)
-    return mass @ pull / np.sum(mass[::2, ::2])
+    """Share the static load out over the nodes as their masses, (n,)."""
+    rotor = problem.rotor
+    return rotor.mass @ rotor.translation(problem.static_load) / rotor.total_mass
 
 
 def initial_state(problem: OrbitProblem, equilibrium: tuple[float, float]) -> Array:
-    """Start of the run: stations other than the journal hang where journal and load put them."""
+    """Start of the run: nodes other than the journal hang where journal and load put them."""
     rotor, extra = problem.rotor, 0
     if problem.controller is not None:
         extra = problem.controller.a.shape[0]
@@ -67,10 +66,12 @@ def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries]:
         blocks = np.asarray(np.block(rows), dtype=float)
         reference = np.asarray(controller.reference, dtype=float)
     inverse = np.linalg.inv(rotor.mass)
-    matrices = [inverse, rotor.damping, rotor.stiffness, rotor.gyroscopic]
+    matrices = [
+        inverse, rotor.damping, rotor.stiffness, rotor.gyroscopic, rotor.circulatory,
+    ]  # fmt: skip
     structure: tuple[Array, ...] = (
         np.asarray(np.stack(matrices), dtype=float),
-        np.column_stack([rotor.unbalance, rotor.unbalance_phase]),
+        np.column_stack([np.abs(rotor.unbalance), np.angle(rotor.unbalance), rotor.first_unknown]),
         problem.schedule.knots,
         shapes,
         times,

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..model.shaft import Disc, Material, Section
+from ..model.shaft import STEEL, Disc, Material, Section
 from .rotor import Node, Rotor
 
 Array = NDArray[np.float64]
@@ -58,7 +58,7 @@ class Beam:
 
     sections: tuple[Section, ...]
     discs: tuple[Disc, ...] = ()
-    material: Material = Material()
+    material: Material = STEEL
     shear: bool = True
     axial_force: float = 0.0
     internal_damping: float = 0.0
@@ -195,9 +195,7 @@ class Beam:
         return total[0], total[1], total[2], total[3]
 
 
-def shear_coefficient(
-    radius_ratio: float | Array, poisson_ratio: float
-) -> float | Array:
+def shear_coefficient(radius_ratio: float | Array, poisson_ratio: float) -> float | Array:
     """Cowper's shear coefficient of a (hollow) circle; `radius_ratio` is inner over outer."""
     m2 = np.square(radius_ratio)
     first = (1.0 + m2) ** 2

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arguments import above_zero, not_negative
 from ..errors import InputError
 
 Array = NDArray[np.float64]
@@ -97,7 +98,7 @@ class Rotor:
         smallest = float(np.linalg.eigvalsh(self.mass)[0])
         if smallest < -_SYMMETRY * scale:
             raise InputError(
-                "must not be negative (smallest eigenvalue given)",
+                "must be positive semi-definite (smallest eigenvalue given)",
                 source=self.source, key=self._label("mass"), value=smallest,
             )  # fmt: skip
         unbalance = np.array(self.unbalance, dtype=complex)
@@ -208,6 +209,11 @@ class Rotor:
         x = self.translation((1.0, 0.0))
         return float(x @ self.mass @ x)
 
+    @property
+    def rigid_mass(self) -> float | None:
+        """Mass per bearing [kg] of a rigid rotor; None for others: no critical mass is theirs."""
+        return self.parameters["mass"] if self.kind == "rigid" else None
+
     def node(self, place: int | str) -> int:
         """Number of a node given by its number or its name.
 
@@ -274,7 +280,7 @@ class Rotor:
         phase : float
             Of the unbalance ahead of the shaft's mark [rad].
         """
-        _above_zero(mass=mass)
+        above_zero("rotor", mass=mass)
         zero = np.zeros((2, 2))
         return cls(
             mass * np.eye(2), zero, zero, zero, zero, (Node(),),
@@ -301,8 +307,8 @@ class Rotor:
         bearings : (float, float)
             Positions of the journals along z from the centre of mass [m].
         """
-        _above_zero(mass=mass, transverse_inertia=transverse_inertia)
-        _not_negative(polar_inertia=polar_inertia)
+        above_zero("rotor", mass=mass, transverse_inertia=transverse_inertia)
+        not_negative("rotor", polar_inertia=polar_inertia)
         a, b = bearings
         if not (np.isfinite(a) and np.isfinite(b) and a != b):
             raise InputError("must be two different places", key="rotor.bearings", value=bearings)
@@ -346,8 +352,10 @@ class Rotor:
         unbalance : float
             Of the disc, per bearing [kg m].
         """
-        _above_zero(disc_mass=disc_mass, shaft_stiffness=shaft_stiffness)
-        _not_negative(journal_mass=journal_mass, disc_damping=disc_damping, unbalance=unbalance)
+        above_zero("rotor", disc_mass=disc_mass, shaft_stiffness=shaft_stiffness)
+        not_negative(
+            "rotor", journal_mass=journal_mass, disc_damping=disc_damping, unbalance=unbalance
+        )
         eye, zero = np.eye(2), np.zeros((4, 4))
         return cls(
             np.kron(np.diag([journal_mass, disc_mass]), eye),
@@ -432,15 +440,3 @@ def _real(value: ArrayLike, label: str, source: str | None) -> Array:
     result = np.array(array, dtype=float)
     result.setflags(write=False)
     return result
-
-
-def _above_zero(**values: float) -> None:
-    for name, value in values.items():
-        if not (np.isfinite(value) and value > 0.0):
-            raise InputError("must be above 0", key=f"rotor.{name}", value=value)
-
-
-def _not_negative(**values: float) -> None:
-    for name, value in values.items():
-        if not (np.isfinite(value) and value >= 0.0):
-            raise InputError("must be 0 or more", key=f"rotor.{name}", value=value)

@@ -14,9 +14,8 @@ import numpy as np
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError, RotorsimError
 from ..files.scenario.settings import OrbitForce, SpeedRamp
-from ..model.rotor import rigid_mass
 from ..study import orbits as orbit_steps
-from ..study.stability import StabilityCurve, rotor_on_film, stability_curves
+from ..study.stability import StabilityCurve, stability_curves
 from ..study.summary import describe_orbit, expected_growth, heating_effect
 from .film_motion import film_in_motion
 
@@ -71,7 +70,8 @@ class Results:
     @property
     def rotor_mass(self) -> float | None:
         """Per bearing [kg]; None without a rotor, or with one that is not rigid."""
-        return rigid_mass(self.scenario.rotor)
+        rotor = self.scenario.rotor
+        return None if rotor is None else rotor.rigid_mass
 
     @cached_property
     def orbit_rows(self) -> list[dict[str, Any]]:
@@ -118,8 +118,7 @@ def compute(
     With `orbits` those are taken for the scenario's, and none is simulated.
     """
     attempt = Attempts(announce)
-    rotor = rotor_on_film(scenario.rotor)
-    curves = attempt("critical mass", lambda: stability_curves(table, rotor), [])
+    curves = attempt("critical mass", lambda: stability_curves(table, scenario.rotor), [])
     paths = attempt("eigenvalues", lambda: eigenvalue_paths(scenario, table), [])
     chart = attempt("stability map", lambda: map_of(scenario, table), None)
     films: list[FilmSurface] = []
@@ -200,7 +199,7 @@ def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
     from ..bearing.whirl import rigid_thresholds
 
     if scenario.rotor is not None:
-        return scenario.rotor.mass
+        return scenario.rotor.total_mass
     top = rigid_thresholds(
         table.stiffness[..., -1, :, :], table.damping[..., -1, :, :], table.speeds[-1]
     )
@@ -218,19 +217,22 @@ def eigenvalue_paths(scenario: Scenario, table: CoefficientTable) -> list[Eigenv
 
     In the orbit's clearance; without an orbit in the first one.
     """
-    from ..machine.over_speed import converged_speeds, rotor_modes, rotor_thresholds
+    from ..machine.machine import Machine
+    from ..machine.modes import known_speeds, modes, threshold_speeds
+    from ..machine.support import TableSupport
     from .recording import EigenvaluePath
 
-    rotor, settings = rotor_on_film(scenario.rotor), scenario.orbit
+    rotor, settings = scenario.rotor, scenario.orbit
     if rotor is None:
         return []
     clearance = settings.radial_clearance if settings else scenario.radial_clearances[0]
     paths = []
     for model in (str(name) for name in table.dataset["thermal_model"].values):
         one = orbit_steps.curve_of(table, model, clearance)
-        if converged_speeds(one).size < 2:
+        machine = Machine.on_identical(rotor, TableSupport(one.interpolator()))
+        if known_speeds(machine).size < 2:
             continue
-        branches, thresholds = rotor_modes(one, rotor), rotor_thresholds(one, rotor)
+        branches, thresholds = modes(machine), threshold_speeds(machine)
         first = thresholds[0] if thresholds else None
         paths.append(
             EigenvaluePath(

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..machine.over_speed import RigidShaft
 from ..study.planes import Plane
 from ..study.wording import RPM, ZERO_CELSIUS
 
@@ -89,7 +88,7 @@ def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tu
                 str(curve.choices["thermal_model"]),
                 curve.branches.parameter,
                 curve.branches.eigenvalues,
-                curve.sense,
+                curve.branches.whirl_sense,
                 [(one.speed, one.whirl_frequency) for one in curve.thresholds],
             )
             for curve in group
@@ -105,7 +104,7 @@ def tolerance_figure(study: ToleranceStudy, title: str = "") -> Figure:
     from .figures import tolerance_histograms
 
     outputs = study.samples.outputs
-    mass = study.rotor.mass if isinstance(study.rotor, RigidShaft) else None
+    mass = study.rotor.rigid_mass
     failed = [sample for sample, _ in study.samples.failures]
     return tolerance_histograms(
         np.delete(outputs["threshold_speed"], failed),

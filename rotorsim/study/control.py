@@ -191,12 +191,13 @@ def _run(
     force: BearingForce, film: LoadedFilm, rest: tuple[float, float], speed: float, mass: float,
     disturbance: float, revolutions: int,
 ) -> Orbit:  # fmt: skip
-    from ..orbit import OrbitProblem, SpeedSchedule, rigid_rotor, simulate
+    from ..orbit import OrbitProblem, SpeedSchedule, simulate
+    from ..rotor import Rotor
 
     return simulate(
         OrbitProblem(
             force,
-            rigid_rotor(mass),
+            Rotor.rigid(mass),
             SpeedSchedule.constant(speed, revolutions),
             static_load=(film.load, 0.0),
             equilibrium=rest,

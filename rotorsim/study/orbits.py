@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
     from ..files.scenario import OrbitSettings, Scenario
     from ..model import Bearing
-    from ..model.rotor import Rotor
-    from ..orbit import LinearForce, LoadedFilm, Orbit, OrbitProblem, RotorModel, SpeedSchedule
+    from ..orbit import LinearForce, LoadedFilm, Orbit, OrbitProblem, SpeedSchedule
+    from ..rotor import Rotor
 
 UNPLACED = (
     "the table does not say where the journal stands: the motion is shown about the bearing's "
@@ -136,7 +136,7 @@ def orbit_problem(
         carried = load
     problem = OrbitProblem(
         force=force,
-        rotor=rotor_model(rotor, unbalance=settings.unbalance),
+        rotor=rotor if settings.unbalance else replace(rotor, unbalance=0.0 * rotor.unbalance),
         schedule=schedule,
         static_load=(load if settings.static_load else 0.0, 0.0),
         initial_displacement=settings.initial_displacement,
@@ -152,7 +152,7 @@ def orbit_problem(
     )
     if settings.actuator is None:
         return problem
-    return with_actuator(problem, settings.actuator, rotor.mass, carried)
+    return with_actuator(problem, settings.actuator, rotor.total_mass, carried)
 
 
 def _carried_load(
@@ -197,19 +197,6 @@ def nonlinear_film(scenario: Scenario, model: str, speed: float) -> LoadedFilm:
         raise InputError(
             error.message, source=scenario.source, key=error.key, value=error.value
         ) from None
-
-
-def rotor_model(rotor: Rotor, *, unbalance: bool = True) -> RotorModel:
-    """Matrices of the scenario's rotor, with or without its unbalance."""
-    from ..model.rotor import RigidRotor
-    from ..orbit import jeffcott_rotor, rigid_rotor
-
-    moment = rotor.unbalance if unbalance else 0.0
-    if isinstance(rotor, RigidRotor):
-        return rigid_rotor(rotor.mass, moment)
-    return jeffcott_rotor(
-        rotor.disc_mass, rotor.journal_mass, rotor.shaft_stiffness, rotor.disc_damping, moment
-    )
 
 
 def orbit_settings(scenario: Scenario) -> tuple[OrbitSettings, Rotor]:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model import LoadTarget, MeshSize
-from ..model.rotor import rigid_mass
 from .axes import tabulate_over
 
 if TYPE_CHECKING:
@@ -131,7 +130,7 @@ def plane_of_scenario(
         scenario, axes, _solved_speeds(scenario, speeds), thermal_models=thermal_models, mesh=mesh,
         executor=executor, workers=workers, progress=progress,
     )  # fmt: skip
-    own = rigid_mass(scenario.rotor)
+    own = None if scenario.rotor is None else scenario.rotor.rigid_mass
     mass = given.get("mass")
     if mass is None and own is not None:
         mass = _masses_about(own) if "mass" in (x, y) else [own]

@@ -9,42 +9,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bearing.interpolation import Coefficients
-from ..machine.modes import Branches, ThresholdSpeed
-from ..machine.over_speed import (
-    JeffcottShaft,
-    RigidShaft,
-    RotorOnFilm,
-    rotor_modes,
-    rotor_thresholds,
-)
-from ..model.rotor import JeffcottRotor, Rotor
+from ..machine.machine import Machine
+from ..machine.modes import Modes, ThresholdSpeed, known_speeds, modes, spectrum, threshold_speeds
+from ..machine.support import TableSupport
+from ..rotor import Rotor
 from .wording import number
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
     from ..machine.map import StabilityMap
-    from ..machine.over_speed import RotorOnFilm
 
 
-def rotor_on_film(rotor: Rotor | None) -> RotorOnFilm | None:
-    """Rotor of a scenario for the linear analyses; None without one."""
-    if rotor is None:
-        return None
-    if isinstance(rotor, JeffcottRotor):
-        return JeffcottShaft(
-            rotor.disc_mass, rotor.shaft_stiffness, rotor.journal_mass, rotor.disc_damping
-        )
-    return RigidShaft(rotor.mass)
-
-
-def rotor_words(rotor: RotorOnFilm | None) -> str:
+def rotor_words(rotor: Rotor | None) -> str:
     """``rotor of 1200 kg per bearing``, ``Jeffcott rotor``; empty without one."""
     if rotor is None:
         return ""
-    if isinstance(rotor, RigidShaft):
-        return f"rotor of {number(rotor.mass)} kg per bearing"
-    return "Jeffcott rotor" if isinstance(rotor, JeffcottShaft) else "rotor of your matrices"
+    if rotor.rigid_mass is not None:
+        return f"rotor of {number(rotor.rigid_mass)} kg per bearing"
+    words = {"jeffcott": "Jeffcott rotor", "matrices": "rotor of your matrices"}
+    return words.get(rotor.kind, "rotor")
 
 
 Array = NDArray[np.float64]
@@ -69,7 +52,9 @@ class StabilityCurve:
     mass : float or None
         Per bearing, of a rigid rotor [kg].
     eigenvalues : (n, k) complex array or None
-        Of the rotor [1/s], falling real part.
+        Of the rotor [1/s], falling real part, those without damping last.
+    undamped : (n, k) bool array or None
+        Whether an eigenvalue's real part is below its own accuracy: neither stable nor unstable.
     threshold_speeds : tuple of float
         Speeds at which that rotor turns from stable to unstable or back [rad/s].
     """
@@ -83,12 +68,19 @@ class StabilityCurve:
     rotor: str = ""
     mass: float | None = None
     eigenvalues: NDArray[np.complex128] | None = None
+    undamped: NDArray[np.bool_] | None = None
     threshold_speeds: tuple[float, ...] = ()
 
     @property
     def growth_rate(self) -> Array | None:
-        """Largest real part of the eigenvalues, above 0 where unstable [1/s]; None: no rotor."""
-        return None if self.eigenvalues is None else self.eigenvalues[:, 0].real
+        """Largest real part of the eigenvalues, above 0 where unstable [1/s]; None: no rotor.
+
+        0 where no mode is damped or driven.
+        """
+        if self.eigenvalues is None:
+            return None
+        rate = self.eigenvalues[:, 0].real
+        return rate if self.undamped is None else np.where(self.undamped[:, 0], 0.0, rate)
 
 
 @dataclass(frozen=True)
@@ -138,20 +130,18 @@ def map_planes(chart: StabilityMap) -> list[MapPlane]:
 
 
 def stability_curves(
-    table: CoefficientTable, rotor: RotorOnFilm | float | None = None
+    table: CoefficientTable, rotor: Rotor | float | None = None
 ) -> list[StabilityCurve]:
     """Curves of every thermal model and clearance in `table`.
 
     Parameters
     ----------
     table : CoefficientTable
-    rotor : RotorOnFilm or float, optional
+    rotor : Rotor or float, optional
         A number is the mass of a rigid rotor per bearing [kg].
     """
-    from ..machine.over_speed import RigidShaft
-
     if isinstance(rotor, (int, float)):
-        rotor = RigidShaft(float(rotor))
+        rotor = Rotor.rigid(float(rotor))
     values = {name: table.dataset[name].values for name in table.choices}
     combinations = itertools.product(*(enumerate(column) for column in values.values()))
     curves = []
@@ -169,10 +159,9 @@ def _curve(
     table: CoefficientTable,
     index: tuple[int, ...],
     choices: dict[str, Any],
-    rotor: RotorOnFilm | None,
+    rotor: Rotor | None,
 ) -> StabilityCurve:
     from ..bearing.whirl import rigid_thresholds
-    from ..machine.over_speed import RigidShaft
 
     usable = table.converged[index]
     blank = np.where(usable, 1.0, np.nan)[:, None, None]
@@ -185,6 +174,12 @@ def _curve(
         load=load,
         radial_clearance=choices["radial_clearance"],
     )
+    eigenvalues, undamped, thresholds = None, None, ()
+    if rotor is not None and usable.any():
+        machine = Machine.on_identical(rotor, TableSupport(table.interpolator(**choices)))
+        eigenvalues, undamped = _eigenvalues(machine, table.speeds)
+        if known_speeds(machine).size > 1:
+            thresholds = tuple(one.speed for one in threshold_speeds(machine))
     return StabilityCurve(
         choices=choices,
         speed=table.speeds,
@@ -193,50 +188,24 @@ def _curve(
         critical_mass_dimensionless=found.critical_mass_dimensionless,
         whirl_frequency_ratio=found.whirl_frequency_ratio,
         rotor=rotor_words(rotor),
-        mass=rotor.mass if isinstance(rotor, RigidShaft) else None,
-        eigenvalues=(
-            None if rotor is None else _eigenvalues(rotor, stiffness, damping, table.speeds)
-        ),
-        threshold_speeds=() if rotor is None else _thresholds(table, choices, rotor),
+        mass=None if rotor is None else rotor.rigid_mass,
+        eigenvalues=eigenvalues,
+        undamped=undamped,
+        threshold_speeds=thresholds,
     )
 
 
 def _eigenvalues(
-    rotor: RotorOnFilm, stiffness: Array, damping: Array, speeds: Array
-) -> NDArray[np.complex128]:
-    """(n, k), each row by falling real part; NaN where K or C is."""
-    from ..machine.over_speed import RigidShaft
-    from ..machine.rates import eigenvalues
+    machine: Machine, speeds: Array
+) -> tuple[NDArray[np.complex128], NDArray[np.bool_]]:
+    """Eigenvalues (n, k), each row by falling real part, undamped ones last; which those are.
 
-    values: NDArray[np.complex128]
-    if isinstance(rotor, RigidShaft):
-        values = eigenvalues(stiffness, damping, rotor.mass)
-    else:
-        rows = [
-            np.linalg.eigvals(rotor.state_matrix(Coefficients(k, c, float(speed))))
-            if np.all(np.isfinite(k)) and np.all(np.isfinite(c))
-            else None
-            for k, c, speed in zip(stiffness, damping, speeds, strict=True)
-        ]
-        size = max((row.size for row in rows if row is not None), default=0)
-        gap = np.full(size, complex(np.nan, np.nan))
-        values = np.array([gap if row is None else row for row in rows], dtype=complex)
-    order = np.argsort(-values.real, axis=1, kind="stable")
-    return np.take_along_axis(values, order, axis=1)
-
-
-def _thresholds(
-    table: CoefficientTable, choices: dict[str, Any], rotor: RotorOnFilm
-) -> tuple[float, ...]:
-    from ..machine.over_speed import converged_speeds, rotor_thresholds
-
-    if converged_speeds(table, **choices).size < 2:
-        return ()
-    return tuple(one.speed for one in rotor_thresholds(table, rotor, **choices))
-
-
-FORWARD = 0.1
-"""Ratio of areas, orbit to circle, above which a whirl counts as forward (or backward)."""
+    NaN where a support has no coefficients.
+    """
+    values, accuracy = spectrum(machine, speeds)
+    undamped = np.abs(values.real) <= accuracy
+    order = np.lexsort((-values.real, undamped), axis=1)
+    return np.take_along_axis(values, order, axis=1), np.take_along_axis(undamped, order, axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,24 +216,23 @@ class Campbell:
     ----------
     choices : dict
         ``thermal_model``, ``radial_clearance`` [m], and any further dimension of the table.
-    branches : Branches
+    branches : Modes
         The oscillating ones of lowest frequency.
-    sense : (n, k) array
-        Of whirl: 1 a forward circle, -1 a backward one, 0 a straight line.
     growth : (n,) array
-        Largest real part of all eigenvalues [1/s], non-oscillating ones included.
+        Largest real part of all eigenvalues [1/s], non-oscillating ones included, those without
+        damping left out.
     thresholds : tuple of ThresholdSpeed
     """
 
     choices: dict[str, Any]
-    branches: Branches
-    sense: Array
+    branches: Modes
     growth: Array
     thresholds: tuple[ThresholdSpeed, ...]
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data for JSON: every quantity over speed, branch by branch."""
         found = self.branches
+        sense, whirl, undamped = found.whirl_sense, found.whirl, found.undamped
         return {
             "speed": found.parameter,
             "growth_rate": self.growth,
@@ -273,9 +241,10 @@ class Campbell:
                     "growth_rate": found.eigenvalues[:, k].real,
                     "damped_frequency": found.damped_frequency[:, k],
                     "damping_ratio": found.damping_ratio[:, k],
-                    "log_decrement": found.log_decrement[:, k],
-                    "whirl_direction": self.sense[:, k],
-                    "whirl": [whirl_word(value) for value in self.sense[:, k]],
+                    "log_decrement": found.logarithmic_decrement[:, k],
+                    "whirl_direction": sense[:, k],
+                    "whirl": [str(word) for word in whirl[:, k]],
+                    "undamped": undamped[:, k],
                 }
                 for k in range(found.eigenvalues.shape[1])
             ],
@@ -283,19 +252,14 @@ class Campbell:
         }
 
 
-def whirl_word(sense: float) -> str:
-    """``forward``, ``backward`` or ``straight``."""
-    return "forward" if sense > FORWARD else "backward" if sense < -FORWARD else "straight"
-
-
-def campbell_curves(table: CoefficientTable, rotor: RotorOnFilm, modes: int = 8) -> list[Campbell]:
+def campbell_curves(table: CoefficientTable, rotor: Rotor, count: int = 8) -> list[Campbell]:
     """Campbell data of `rotor` on every curve of `table`.
 
     Parameters
     ----------
     table : CoefficientTable
-    rotor : RotorOnFilm
-    modes : int
+    rotor : Rotor
+    count : int
         Branches to keep, those of lowest frequency.
 
     Raises
@@ -312,19 +276,18 @@ def campbell_curves(table: CoefficientTable, rotor: RotorOnFilm, modes: int = 8)
             name: value if isinstance(value := values[name][i], str) else float(value)
             for name, i in place.items()
         }
-        curves.append(_campbell(part, rotor, modes, choices))
+        curves.append(_campbell(part, rotor, count, choices))
     return curves
 
 
 def _campbell(
-    table: CoefficientTable, rotor: RotorOnFilm, modes: int, choices: dict[str, Any]
+    table: CoefficientTable, rotor: Rotor, count: int, choices: dict[str, Any]
 ) -> Campbell:
-    every = rotor_modes(table, rotor)
-    branches = every.oscillating().lowest(modes)
+    machine = Machine.on_identical(rotor, TableSupport(table.interpolator()))
+    every = modes(machine)
     return Campbell(
         choices=choices,
-        branches=branches,
-        sense=branches.whirl_sense(rotor.whirl_planes),
-        growth=every.eigenvalues.real.max(axis=1),
-        thresholds=tuple(rotor_thresholds(table, rotor)),
+        branches=every.oscillating().lowest(count),
+        growth=every.largest_growth_rate,
+        thresholds=tuple(threshold_speeds(machine)),
     )

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bearing.interpolation import Coefficients
 from ..errors import InputError
-from ..machine.over_speed import RotorOnFilm
+from ..machine.machine import Machine
+from ..machine.modes import ThresholdSpeed, modes, threshold_speeds
+from ..machine.support import ConstantSupport, TableSupport
 from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..model import Case, LoadTarget, MeshSize
+from ..rotor import Rotor
 from .axes import changed, with_mesh
-from .stability import rotor_on_film
 from .wording import RPM
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class FilmThreshold:
     Parameters
     ----------
     case : Case
-    rotor : RotorOnFilm
+    rotor : Rotor
     operating_speed : float
         [rad/s]
     speeds : tuple of float
@@ -55,7 +56,7 @@ class FilmThreshold:
     """
 
     case: Case
-    rotor: RotorOnFilm
+    rotor: Rotor
     operating_speed: float
     speeds: tuple[float, ...]
 
@@ -82,19 +83,17 @@ class FilmThreshold:
         SampleError
             The film did not converge.
         """
-        from ..machine.modes import find_thresholds
-
         case = changed(self.case, {INPUTS[name]: value for name, value in sample.items()})
         points = self._along(case, sorted({*self.speeds, self.operating_speed}))
         at = points[self.operating_speed]
-        crossings = find_thresholds(self._matrix(points), sorted(points))
+        crossings = self._thresholds(points)
         for _ in range(_REFINEMENTS):
             # The film is solved where the threshold was found, which makes it exact there.
             lost = next((c.speed for c in crossings if c.becomes_unstable), None)
             if lost is None or min(abs(lost / s - 1.0) for s in points) < 1e-4:
                 break
             points |= self._along(case, [lost])
-            crossings = find_thresholds(self._matrix(points), sorted(points))
+            crossings = self._thresholds(points)
         rates = [self._growth(point) for point in points.values()]
         found = [c.speed for c in crossings if c.becomes_unstable]
         return {
@@ -124,12 +123,13 @@ class FilmThreshold:
 
     def _growth(self, point: OperatingPoint) -> float:
         """Largest real part of the eigenvalues [1/s]."""
-        film = Coefficients(point.stiffness, point.damping, point.speed)
-        return float(np.linalg.eigvals(self.rotor.state_matrix(film)).real.max())
+        film = ConstantSupport(point.stiffness, point.damping)
+        found = modes(Machine.on_identical(self.rotor, film), point.speed)
+        return float(found.largest_growth_rate[0])
 
-    def _matrix(self, points: Mapping[float, OperatingPoint]) -> Callable[[float], Array]:
-        curve = _interpolator(points)
-        return lambda omega: self.rotor.state_matrix(Coefficients(*curve(omega), omega))
+    def _thresholds(self, points: Mapping[float, OperatingPoint]) -> list[ThresholdSpeed]:
+        machine = Machine.on_identical(self.rotor, TableSupport(_interpolator(points)))
+        return threshold_speeds(machine, subdivisions=1)
 
 
 def _interpolator(points: Mapping[float, OperatingPoint]) -> CoefficientInterpolator:
@@ -150,7 +150,7 @@ class ToleranceStudy:
     thermal_model : str
     radial_clearance : float
         Nominal [m].
-    rotor : RotorOnFilm
+    rotor : Rotor
     operating_speed : float
         [rad/s]
     tolerances : mapping of str to Tolerance
@@ -170,7 +170,7 @@ class ToleranceStudy:
 
     thermal_model: str
     radial_clearance: float
-    rotor: RotorOnFilm
+    rotor: Rotor
     operating_speed: float
     tolerances: Mapping[str, Tolerance]
     nominal: Mapping[str, float | None]
@@ -191,7 +191,7 @@ def study_tolerances(
     scenario: Scenario,
     settings: ToleranceSettings | None = None,
     *,
-    rotor: RotorOnFilm | None = None,
+    rotor: Rotor | None = None,
     operating_speed: float | None = None,
     radial_clearance: float | None = None,
     thermal_model: str | None = None,
@@ -207,7 +207,7 @@ def study_tolerances(
     scenario : Scenario
     settings : ToleranceSettings, optional
         The scenario's ``[tolerances]`` by default.
-    rotor : RotorOnFilm, optional
+    rotor : Rotor, optional
         The scenario's by default.
     operating_speed : float, optional
         [rad/s]; by default the orbit's where it is constant, else the highest.
@@ -232,7 +232,7 @@ def study_tolerances(
         raise InputError(
             'is missing: write for example [tolerances] radial_clearance = "5 um"', key="tolerances"
         )
-    rotor = rotor or rotor_on_film(scenario.rotor)
+    rotor = rotor or scenario.rotor
     if rotor is None:
         raise InputError("is missing: thresholds need a rotor", key="rotor")
     scenario = scenario if mesh is None else with_mesh(scenario, mesh)

@@ -94,6 +94,11 @@ def curve_title(curve: StabilityCurve) -> str:
     return ", ".join([str(curve.choices["thermal_model"]), *given, *extra])
 
 
+def verdict_word(growth_rate: float) -> str:
+    """``stable``, ``unstable`` or, where nothing damps or drives the rotor, ``undamped``."""
+    return "unstable" if growth_rate > 0.0 else "stable" if growth_rate < 0.0 else "undamped"
+
+
 def verdict_over_range(curve: StabilityCurve) -> str | None:
     """``stable throughout``, ``unstable throughout``, ``changes``.
 
@@ -104,9 +109,8 @@ def verdict_over_range(curve: StabilityCurve) -> str | None:
     rates = [] if curve.growth_rate is None else [float(rate) for rate in curve.growth_rate]
     if not rates or not all(map(math.isfinite, rates)):
         return None
-    if max(rates) < 0.0:
-        return "stable throughout"
-    return "unstable throughout" if min(rates) >= 0.0 else "changes"
+    words = {verdict_word(rate) for rate in rates}
+    return f"{words.pop()} throughout" if len(words) == 1 else "changes"
 
 
 def thresholds_text(curve: StabilityCurve) -> str:
@@ -120,20 +124,20 @@ def thresholds_text(curve: StabilityCurve) -> str:
         for speed, rate in zip(curve.speed, curve.growth_rate, strict=True)
         if math.isfinite(rate)
     ]
-    verdicts = {rate < 0.0 for _, rate in known}
-    if len(verdicts) != 1:
+    words = {verdict_word(rate) for _, rate in known}
+    if len(words) != 1:
         return "-"
-    word, (first, last) = "stable" if verdicts.pop() else "unstable", (known[0][0], known[-1][0])
+    word, (first, last) = words.pop(), (known[0][0], known[-1][0])
     if len(known) < len(curve.speed):
         return f"none: {word} at the {len(known)} of {len(curve.speed)} speeds known"
     return f"none: {word}, {first:.0f} to {last:.0f} rpm" if last > first else f"none: {word}"
 
 
 def verdict_at(curve: StabilityCurve) -> str | None:
-    """``stable`` or ``unstable`` at the highest speed; None where that is not known."""
+    """``stable``, ``unstable`` or ``undamped`` at the highest speed; None: not known."""
     if curve.growth_rate is None or math.isnan(curve.growth_rate[-1]):
         return None
-    return "stable" if curve.growth_rate[-1] < 0.0 else "unstable"
+    return verdict_word(float(curve.growth_rate[-1]))
 
 
 def verdict_at_top(curve: StabilityCurve) -> str:

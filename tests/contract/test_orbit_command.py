@@ -125,7 +125,8 @@ def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
     import rerun as rr
     from rerun.chunk import RrdReader
 
-    from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, rigid_rotor, simulate
+    from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, simulate
+    from rotorsim.rotor import Rotor
     from rotorsim.show.recording.live import LiveView
     from rotorsim.show.recordings import orbit_tracks
 
@@ -134,7 +135,7 @@ def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
     stream.save(path)
     problem = OrbitProblem(
         ShortBearingForce(0.0277, 0.025, 0.05, 1e-4),
-        rigid_rotor(5.0),
+        Rotor.rigid(5.0),
         SpeedSchedule.constant(1000.0, 100.0),
         static_load=(400.0, 0.0),
         initial_displacement=(3e-5, 0.0),

@@ -9,7 +9,10 @@ import pytest
 from command_line import strict
 
 import rotorsim as rs
+from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import threshold_speeds
+from rotorsim.machine.support import TableSupport
+from rotorsim.rotor import Rotor
 
 ROOT = Path(__file__).parents[2]
 
@@ -47,10 +50,17 @@ def test_pinned_thresholds(table):
     }
     for (model, clearance), rpm in wanted.items():
         one = table.select(thermal_model=model, radial_clearance=clearance)
-        found = threshold_speeds(one, mass=1200.0)
+        found = thresholds(one)
         assert [t.speed * 30.0 / np.pi for t in found] == pytest.approx([rpm], rel=1e-3)
     one = table.select(thermal_model="isothermal", radial_clearance=100e-6)
-    assert not threshold_speeds(one, mass=1200.0)
+    assert not thresholds(one)
+
+
+def thresholds(one):
+    """Of the paper's rotor on one curve of the table."""
+    return threshold_speeds(
+        Machine.on_identical(Rotor.rigid(1200.0), TableSupport(one.interpolator()))
+    )
 
 
 def test_it_is_found_by_name_wherever_one_is(here):

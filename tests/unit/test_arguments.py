@@ -12,7 +12,8 @@ import rotorsim as rs
 from rotorsim.bearing.interpolation import Coefficients
 from rotorsim.errors import InputError
 from rotorsim.files.scenario import Scenario
-from rotorsim.machine.over_speed import RigidShaft, rotor_modes, rotor_thresholds
+from rotorsim.machine.machine import Machine
+from rotorsim.machine.support import ConstantSupport
 
 SCENARIO = Scenario.from_text(
     f"{BEARING}\n{CONSTANT_OIL}\n[film]\nmesh = {{ circumferential = 32, axial = 8 }}\n"
@@ -45,14 +46,10 @@ def test_a_mass_is_a_number(mass) -> None:
         rs.state_space(FILM, mass)
 
 
-@pytest.mark.parametrize("call", [rotor_thresholds, rotor_modes])
-def test_the_table_comes_before_the_rotor(call) -> None:
-    table = rs.tabulate(SCENARIO, workers=1)
-    with pytest.raises(InputError, match=r"^table: .*the rotor comes after.*'RigidShaft'"):
-        call(RigidShaft(1200.0), table)
-    with pytest.raises(InputError, match=r"^rotor: .*RigidShaft\(mass\).*'float'"):
-        call(table, 1200.0)
-    call(table, RigidShaft(1200.0))
+@pytest.mark.parametrize("rotor", [1200.0, FILM])
+def test_a_machine_has_a_rotor(rotor) -> None:
+    with pytest.raises(InputError, match=r"^rotor: must be a Rotor: Rotor.rigid\(mass\)"):
+        Machine.on_identical(rotor, ConstantSupport(1e8))
 
 
 def test_shipped_scenarios_are_loaded_by_name(tmp_path, monkeypatch) -> None:

@@ -13,10 +13,12 @@ from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError, ScenarioError
 from rotorsim.files.scenario import Scenario, ToleranceSettings
 from rotorsim.files.scenario.tolerances import parse_spread
+from rotorsim.machine.machine import Machine
 from rotorsim.machine.map import stability_map
 from rotorsim.machine.modes import threshold_speeds
-from rotorsim.machine.over_speed import RigidShaft
+from rotorsim.machine.support import TableSupport
 from rotorsim.model import LoadTarget, MeshSize
+from rotorsim.rotor import Rotor
 from rotorsim.show.stability_figures import tolerance_figure
 from rotorsim.status import SolveStatus
 from rotorsim.study.axes import changed, tabulate_over
@@ -140,12 +142,10 @@ def test_tolerances_become_a_distribution():
     assert found.samples.failures == ()
     assert all(column.size == 32 for column in found.samples.inputs.values())
     # Nominal values against the table's own way to a threshold.
-    (nominal,) = threshold_speeds(
-        tabulate_over(
-            scenario, {}, np.linspace(628.0, 1571.0, 9), thermal_models=["thd"], workers=1
-        ),
-        300.0,
-    )
+    speeds = np.linspace(628.0, 1571.0, 9)
+    table = tabulate_over(scenario, {}, speeds, thermal_models=["thd"], workers=1)
+    machine = Machine.on_identical(Rotor.rigid(300.0), TableSupport(table.interpolator()))
+    (nominal,) = threshold_speeds(machine)
     assert found.nominal["threshold_speed"] == pytest.approx(nominal.speed, rel=3e-3)
     point, _ = solve_case(scenario.case(thermal_model="thd"), 1385.0)
     assert found.nominal["critical_mass"] == pytest.approx(point.critical_mass, rel=1e-3)
@@ -190,7 +190,7 @@ def test_films_that_do_not_converge_are_told_apart(monkeypatch, limit):
 def test_thresholds_of_a_sample_are_those_of_its_film():
     scenario = Scenario.from_text(PLAIN)
     case = scenario.case(thermal_model="thd")
-    function = FilmThreshold(case, RigidShaft(300.0), 1200.0, (700.0, 1000.0, 1300.0, 1600.0))
+    function = FilmThreshold(case, Rotor.rigid(300.0), 1200.0, (700.0, 1000.0, 1300.0, 1600.0))
     sample = {
         "radial_clearance": 1.1e-4,
         "viscosity": 0.9,

@@ -20,8 +20,10 @@ from rotorsim.bearing.table_data import COEFFICIENTS
 from rotorsim.errors import InputError, TableError
 from rotorsim.files.formats import FORMATS, read_table, write_table
 from rotorsim.files.ross import from_ross, to_ross
-from rotorsim.machine.over_speed import rotor_modes
-from rotorsim.machine.rotor import GeneralRotor
+from rotorsim.machine.machine import Machine
+from rotorsim.machine.modes import modes
+from rotorsim.machine.support import TableSupport
+from rotorsim.rotor import Rotor
 from rotorsim.status import SolveStatus, Stability
 
 DATA = Path(__file__).parents[1] / "data"
@@ -284,11 +286,11 @@ def test_load_direction_goes_to_the_file_of_ross():
             load_directions("45 deg", Path(source), kinds)
 
 
-def reference() -> tuple[dict, GeneralRotor]:
+def reference() -> tuple[dict, Rotor]:
     stored = json.loads((DATA / "ross_campbell.json").read_text(encoding="utf-8"))
-    rotor = GeneralRotor(
-        stored["mass"], stored["damping"], stored["gyroscopic"], stored["stiffness"],
-        bearing_nodes=tuple(stored["bearing_nodes"]), dofs_per_node=stored["dofs_per_node"],
+    rotor = Rotor.from_matrices(
+        stored["mass"], stored["stiffness"], stored["damping"], stored["gyroscopic"],
+        bearing_nodes=tuple(stored["bearing_nodes"]), unknowns_per_node=stored["dofs_per_node"],
     )  # fmt: skip
     return stored, rotor
 
@@ -307,7 +309,7 @@ def test_the_exported_bearing_gives_the_campbell_diagram_of_ross(tmp_path):
     as_they_stand.write_text("\n".join([head, *rows]), encoding="utf-8")
     turned = CoefficientTable.from_csv(as_they_stand)
     assert not np.allclose(turned.stiffness, source.stiffness, rtol=0.1)
-    branches = rotor_modes(turned, rotor).oscillating()
+    branches = modes(Machine.on_identical(rotor, TableSupport(turned.interpolator()))).oscillating()
     for row, listed in zip(branches.eigenvalues, stored["eigenvalues"], strict=True):
         theirs = np.array([complex(*pair) for pair in listed])
         nearest = np.abs(row[None, :] - theirs[:, None]).min(axis=1)

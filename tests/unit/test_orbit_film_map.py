@@ -16,11 +16,11 @@ from rotorsim.orbit import (
     SpeedSchedule,
     film_map,
     minimum_film,
-    rigid_rotor,
     simulate,
 )
 from rotorsim.orbit.film_map import SqueezeFilm, cache_folder, film_force_map, map_path, read_map
 from rotorsim.orbit.short_bearing import short_bearing_impedance
+from rotorsim.rotor import Rotor
 
 
 @pytest.fixture
@@ -135,7 +135,7 @@ def test_a_long_run_keeps_its_end_only_and_what_was_thinnest_before():
     force = ShortBearingForce(0.0277, 0.025, 0.05, 1e-4)
     problem = OrbitProblem(
         force,
-        rigid_rotor(5.0),
+        Rotor.rigid(5.0),
         SpeedSchedule.constant(1000.0, 400.0),
         static_load=(400.0, 0.0),
         initial_displacement=(3e-5, 0.0),

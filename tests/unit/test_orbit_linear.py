@@ -27,12 +27,10 @@ from rotorsim.orbit import (
     contact_boundary,
     fit_modes,
     growth_rate,
-    jeffcott_rotor,
     minimum_film,
     orbit_ellipse,
     poincare_points,
     recognise,
-    rigid_rotor,
     simulate,
     simulate_linear,
     simulate_pieces,
@@ -40,6 +38,7 @@ from rotorsim.orbit import (
     steady_part,
     whirl_frequency_ratio,
 )
+from rotorsim.rotor import Rotor
 
 CLEARANCE = 1e-4
 SPEED = 500.0
@@ -48,7 +47,7 @@ FORCE = LinearForce(ISOTROPIC, CLEARANCE)
 
 
 def problem(**changes) -> OrbitProblem:
-    base = OrbitProblem(FORCE, rigid_rotor(100.0), SpeedSchedule.constant(SPEED, 20.0))
+    base = OrbitProblem(FORCE, Rotor.rigid(100.0), SpeedSchedule.constant(SPEED, 20.0))
     return dataclasses.replace(base, **changes)
 
 
@@ -71,14 +70,14 @@ def test_schedule_angle_is_the_integral_of_its_speed():
         lambda: SpeedSchedule.ramp(0.0, 5.0, 0.0),
         lambda: SpeedSchedule((0.0, 1.0), (0.0, 0.0)),
         lambda: SpeedSchedule((1.0, 2.0), (5.0, 5.0)),
-        lambda: rigid_rotor(0.0),
-        lambda: jeffcott_rotor(1.0, 0.0, 1e6),
+        lambda: Rotor.rigid(0.0),
+        lambda: problem(rotor=Rotor.jeffcott(1.0, 1e6)),
         lambda: problem(minimum_film=CLEARANCE),
         lambda: problem(samples_per_revolution=2),
         lambda: problem(relative_tolerance=1.0),
         lambda: constant_coefficients(np.eye(3), np.eye(2)),
         lambda: simulate(problem(initial_displacement=(2e-4, 0.0))),
-        lambda: simulate(problem(loads=(StepForce((1.0, 0.0), station=1),))),
+        lambda: simulate(problem(loads=(StepForce((1.0, 0.0), node=1),))),
         lambda: simulate(problem(initial_state=np.zeros(3))),
     ],
 )
@@ -180,7 +179,7 @@ def test_harmonic_load_gives_the_closed_form_response(kind):
     else:
         load = BaseMotion((amplitude / (100.0 * frequency**2), 0.0), frequency)
     orbit = simulate(
-        problem(loads=(load,), schedule=SpeedSchedule.constant(SPEED, 60.0), rotor=rigid_rotor(100))
+        problem(loads=(load,), schedule=SpeedSchedule.constant(SPEED, 60.0), rotor=Rotor.rigid(100))
     )
     steady = orbit.part(orbit.t.size // 2)
     ellipse = orbit_ellipse(steady, 0.7)
@@ -229,7 +228,7 @@ def test_dynamic_controller_has_states_of_its_own():
 
 
 def test_python_force_equals_the_compiled_one():
-    start = {"initial_displacement": (1e-5, 5e-6), "rotor": rigid_rotor(100.0, 1e-4)}
+    start = {"initial_displacement": (1e-5, 5e-6), "rotor": Rotor.rigid(100.0, 1e-4)}
     slow = simulate(problem(force=CallableForce(FORCE.force, CLEARANCE), **start))
     fast = simulate(problem(**start))
     np.testing.assert_allclose(slow.x, fast.x, atol=1e-7 * CLEARANCE)
@@ -239,7 +238,7 @@ def test_python_force_equals_the_compiled_one():
 def test_modes_find_static_position_and_unbalance_response_too():
     force = LinearForce(ISOTROPIC, CLEARANCE, (2e-5, 0.0))
     orbit = simulate(
-        problem(force=force, rotor=rigid_rotor(100.0, 1e-3), initial_displacement=(1e-6, 0.0))
+        problem(force=force, rotor=Rotor.rigid(100.0, 1e-3), initial_displacement=(1e-6, 0.0))
     )
     modes = fit_modes(orbit)
     steady = modes.eigenvalues[modes.synchronous]
@@ -267,7 +266,7 @@ def test_recognition_of_a_settled_a_synchronous_and_a_growing_run():
     settled = simulate(problem(initial_displacement=(1e-5, 0.0)))
     assert settled.status is OrbitStatus.SETTLED
     turning = simulate(
-        problem(rotor=rigid_rotor(100.0, 1e-3), schedule=SpeedSchedule.constant(SPEED, 60))
+        problem(rotor=Rotor.rigid(100.0, 1e-3), schedule=SpeedSchedule.constant(SPEED, 60))
     )
     assert turning.status is OrbitStatus.PERIODIC
     verdict = recognise(turning)
@@ -299,7 +298,7 @@ def test_whirl_beside_an_unbalance_response_is_quasi_periodic():
     alone = simulate(base)
     assert alone.status is OrbitStatus.LIMIT_CYCLE
     assert whirl_frequency_ratio(alone) == pytest.approx(1000.0 / 1700.0, rel=1e-6)
-    both = simulate(dataclasses.replace(base, rotor=rigid_rotor(100.0, 2e-4)))
+    both = simulate(dataclasses.replace(base, rotor=Rotor.rigid(100.0, 2e-4)))
     part = both.part(both.t.size // 2)
     assert whirl_frequency_ratio(part) == pytest.approx(1000.0 / 1700.0, rel=1e-6)
     assert recognise(both).status is OrbitStatus.QUASI_PERIODIC
@@ -326,7 +325,7 @@ def test_backward_whirl_is_told_from_forward():
 def test_cascade_follows_the_synchronous_response_over_a_run_up():
     orbit = simulate(
         problem(
-            rotor=rigid_rotor(100.0, 1e-4),
+            rotor=Rotor.rigid(100.0, 1e-4),
             schedule=SpeedSchedule.ramp(200.0, 1500.0, 4.0),
             samples_per_revolution=32,
         )
@@ -342,7 +341,7 @@ def test_cascade_follows_the_synchronous_response_over_a_run_up():
 
 
 def test_poincare_points_are_one_a_turn_at_one_shaft_angle():
-    orbit = simulate(problem(rotor=rigid_rotor(100.0, 1e-3)))
+    orbit = simulate(problem(rotor=Rotor.rigid(100.0, 1e-3)))
     points = poincare_points(orbit, phase=np.pi / 2)
     np.testing.assert_allclose(points.angle % (2 * np.pi), np.pi / 2)
     assert points.t.size == 20
@@ -353,9 +352,9 @@ def test_reported_loads_are_what_the_rotor_feels():
     """Loads along an orbit against the acceleration that they give a free rotor."""
     from rotorsim.orbit.loads import load_on_rotor
 
-    rotor = jeffcott_rotor(50.0, 5.0, 1e7)
+    rotor = Rotor.jeffcott(50.0, 1e7, 5.0)
     loads = (
-        StepForce((3.0, -2.0), start=0.2, stop=0.6, station=1),
+        StepForce((3.0, -2.0), start=0.2, stop=0.6, node=1),
         HarmonicForce((0.0, 7.0), frequency=40.0, phase=(0.0, 0.3)),
         BaseShock((5.0, 1.0), start=0.5, duration=0.2),
     )
@@ -388,7 +387,7 @@ def test_a_slow_load_leaves_a_long_steady_part():
     orbit = simulate(
         OrbitProblem(
             LinearForce(constant_coefficients(5e6 * np.eye(2), 5e4 * np.eye(2)), 1e-4),
-            rigid_rotor(50.0),
+            Rotor.rigid(50.0),
             SpeedSchedule.constant(900.0, 120.0),
             loads=(HarmonicForce((100.0, 0.0), frequency=240.0),),
         )

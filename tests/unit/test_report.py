@@ -20,7 +20,7 @@ from rotorsim.show.main_job import Results
 from rotorsim.show.report import html, report_page, write_report
 from rotorsim.show.report.results import log_decrement
 from rotorsim.status import SolveStatus
-from rotorsim.study.stability import rotor_on_film, stability_curves
+from rotorsim.study.stability import stability_curves
 from rotorsim.study.sweep import as_table, sweep_points
 
 VOID = {"meta", "link", "img", "br", "hr"}
@@ -194,7 +194,7 @@ ambient_temperature = "40 degC"
     scenario = Scenario.from_text(text, "pump.toml")
     points = sweep_points(list(scenario.cases()), [float(s) for s in scenario.speeds], workers=1)
     table = as_table(points, scenario)
-    curves = stability_curves(table, rotor_on_film(scenario.rotor))
+    curves = stability_curves(table, scenario.rotor)
     said = words_of(report_page(Results(scenario, table, tuple(points), tuple(curves))))
     assert "those of a rigid rotor" in said
     assert "do not hold for the Jeffcott rotor" in said

@@ -6,7 +6,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rotorsim.bearing.interpolation import Coefficients
-from rotorsim.bearing.table import CoefficientTable
 from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
 from rotorsim.machine.actuator import ActuatedForce
@@ -14,16 +13,16 @@ from rotorsim.machine.control import (
     StateFeedback,
     design_lqr,
     design_pd,
-    locus_over_damping,
-    locus_over_mass,
     loop_margins,
     proportional_derivative,
     receptance,
     step_response,
-    unbalance_response,
 )
-from rotorsim.machine.rotor import GeneralRotor
-from rotorsim.machine.statespace import rotor_state_space, state_space
+from rotorsim.machine.machine import Machine
+from rotorsim.machine.response import unbalance_response
+from rotorsim.machine.statespace import state_space
+from rotorsim.machine.support import ConstantSupport
+from rotorsim.rotor import Rotor
 
 K = np.array([[2.2e8, 6.6e8], [-0.9e8, 3.0e8]])
 C = np.array([[7e5, 1e5], [1e5, 3e5]])
@@ -41,6 +40,10 @@ def rate(system):
     return system.poles().real.max()
 
 
+def on_film(rotor):
+    return Machine.on_identical(rotor, ConstantSupport(FILM.stiffness, FILM.damping))
+
+
 def test_receptance_is_the_inverse_dynamic_stiffness(system):
     omega = np.array([0.0, 100.0, 900.0])
     found = receptance(system, omega)
@@ -50,16 +53,13 @@ def test_receptance_is_the_inverse_dynamic_stiffness(system):
         assert np.allclose(found[:, :, i], expected, rtol=1e-9)
 
 
-def test_unbalance_response_against_time_integration(tmp_path):
-    names = [
-        f"{a}{i}{j} [{u}]" for a, u in (("k", "N/m"), ("c", "N s/m")) for i in "xy" for j in "xy"
-    ]
-    row = [1200.0, *K.ravel(), *C.ravel()]
-    text = ",".join(["speed [rad/s]", *names]) + "\n" + ",".join(repr(float(v)) for v in row)
-    (tmp_path / "t.csv").write_text(text)
-    table = CoefficientTable.from_csv(tmp_path / "t.csv")
+def test_unbalance_response_against_time_integration():
     mass, u, w = 0.3 * CRITICAL, 0.01, 1200.0
-    amplitude = unbalance_response(table, mass, u)[0]
+    found = unbalance_response(on_film(Rotor.rigid(mass, u)), [w])
+    amplitude = found.at(0)[0]
+    half = [np.abs(amplitude[0] + s * 1j * amplitude[1]) for s in (1.0, -1.0)]
+    assert found.major_axis(0)[0] == pytest.approx(0.5 * sum(half))
+    assert found.probe(0, 0.5 * np.pi)[0] == pytest.approx(amplitude[1])
     a = state_space(FILM, mass).A
 
     def motion(t, s):
@@ -76,16 +76,6 @@ def test_step_response_ends_at_the_static_deflection():
     time, displacement = step_response(stable, force=100.0, entry=1, duration=0.3)
     assert time[-1] == pytest.approx(0.3)
     assert np.allclose(displacement[:, -1], np.linalg.solve(K, [0.0, 100.0]), rtol=1e-6)
-
-
-def test_root_locus_crosses_at_the_critical_mass():
-    locus = locus_over_mass(FILM, CRITICAL * np.array([0.5, 0.9, 1.0, 1.1, 2.0]))
-    rates = locus.eigenvalues.real.max(axis=1)
-    assert np.all(rates[:2] < 0.0)
-    assert np.all(rates[3:] > 0.0)
-    assert abs(rates[2]) < 1e-9
-    added = locus_over_damping(FILM, MASS, np.linspace(0.0, 2e6, 30))
-    assert added.eigenvalues[0].real.max() > 0.0 > added.eigenvalues[-1].real.max()
 
 
 def test_lqr_stabilises_past_the_passive_threshold(system):
@@ -111,13 +101,13 @@ def test_lqr_stabilises_past_the_passive_threshold(system):
 @pytest.mark.parametrize("node", [0, 1])
 def test_lqr_of_a_general_rotor_has_the_stable_poles_of_the_hamiltonian(node, velocity_scale):
     ks = 1e9 * np.eye(2)
-    rotor = GeneralRotor(
-        np.diag([MASS, MASS, 5.0, 5.0]), np.zeros((4, 4)), np.zeros((4, 4)),
-        np.block([[ks, -ks], [-ks, ks]]), bearing_nodes=(1,), dofs_per_node=2,
+    rotor = Rotor.from_matrices(
+        np.diag([MASS, MASS, 5.0, 5.0]), np.block([[ks, -ks], [-ks, ks]]),
+        bearing_nodes=(1,), unknowns_per_node=2,
     )  # fmt: skip
-    every = rotor_state_space(rotor, FILM)
-    names = [2 * node, 2 * node + 1]
-    system = every[[f"displacement_{i}" for i in names], [f"force_{i}" for i in names]]
+    every = state_space(on_film(rotor), speed=FILM.speed)
+    outputs, inputs = ([f"node{node}_{s}_{i}" for i in "xy"] for s in ("displacement", "force"))
+    system = every[outputs, inputs]
     assert rate(system) > 0.0
     feedback = design_lqr(system, 1e-6, 1e3, velocity_scale)
     assert feedback.gain.shape == (2, 8)
@@ -133,12 +123,9 @@ def test_lqr_of_a_general_rotor_has_the_stable_poles_of_the_hamiltonian(node, ve
 
 
 def test_lqr_says_which_systems_it_takes(system):
-    ks = 1e9 * np.eye(2)
-    rotor = GeneralRotor(
-        np.eye(4), np.zeros((4, 4)), np.zeros((4, 4)), np.block([[ks, -ks], [-ks, ks]]), (1,), 2
-    )
+    rotor = Rotor.jeffcott(1.0, 1e9, 1.0)
     with pytest.raises(InputError, match=r"4 inputs and 8 states: pick the actuator's node"):
-        design_lqr(rotor_state_space(rotor, FILM), 1e-6, 1e3)
+        design_lqr(state_space(on_film(rotor), speed=FILM.speed), 1e-6, 1e3)
     # The last state grows, and no force reaches it.
     a = np.diag([-1.0, -2.0, -3.0, -4.0, 5.0])
     lost = control.StateSpace(a, np.eye(5, 2), np.eye(2, 5), np.zeros((2, 2)))

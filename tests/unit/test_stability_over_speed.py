@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from rotorsim.bearing.table import CoefficientTable
-from rotorsim.bearing.whirl import flexible_critical_mass
+from rotorsim.bearing.whirl import flexible_critical_mass, rigid_threshold
 from rotorsim.errors import InputError
-from rotorsim.machine.modes import rigid_modes, threshold_speeds
-from rotorsim.machine.over_speed import JeffcottShaft, RigidShaft, rotor_modes, rotor_thresholds
-from rotorsim.machine.rotor import GeneralRotor, load_rotor
+from rotorsim.files.rotors import load_rotor
+from rotorsim.machine.machine import Machine
+from rotorsim.machine.modes import modes, threshold_speeds
+from rotorsim.machine.support import TableSupport
+from rotorsim.rotor import Rotor
 
 NAMES = [f"{a}{i}{j} [{u}]" for a, u in (("k", "N/m"), ("c", "N s/m")) for i in "xy" for j in "xy"]
 
@@ -34,18 +36,23 @@ def table(tmp_path):
     return write_table(tmp_path / "t.csv", np.linspace(100.0, 1500.0, 15))
 
 
-def test_rigid_shaft_is_the_rigid_rotor(table):
-    found = rotor_modes(table, RigidShaft(900.0))
-    assert np.array_equal(found.eigenvalues, rigid_modes(table, 900.0).eigenvalues)
-    assert rotor_thresholds(table, RigidShaft(900.0)) == threshold_speeds(table, 900.0)
+def on(table, rotor):
+    return Machine.on_identical(rotor, TableSupport(table.interpolator()))
+
+
+def test_threshold_of_the_rigid_rotor_is_its_critical_mass(table):
+    (found,) = threshold_speeds(on(table, Rotor.rigid(900.0)))
+    closed = rigid_threshold(*film(found.speed), found.speed)
+    assert closed.critical_mass == pytest.approx(900.0, rel=1e-10)
+    assert closed.whirl_frequency == pytest.approx(found.whirl_frequency, rel=1e-10)
 
 
 @pytest.mark.parametrize("shaft_stiffness", [1e12, 8e8, 4e8])
 def test_threshold_speed_of_a_flexible_rotor_is_where_its_closed_form_says(table, shaft_stiffness):
-    (found,) = rotor_thresholds(table, JeffcottShaft(700.0, shaft_stiffness))
+    (found,) = threshold_speeds(on(table, Rotor.jeffcott(700.0, shaft_stiffness)))
     closed = float(flexible_critical_mass(*film(found.speed), shaft_stiffness))
     assert closed == pytest.approx(700.0, rel=1e-8)
-    (rigid,) = rotor_thresholds(table, RigidShaft(700.0))
+    (rigid,) = threshold_speeds(on(table, Rotor.rigid(700.0)))
     if shaft_stiffness == 1e12:
         assert found.speed == pytest.approx(rigid.speed, rel=1e-3)
     else:
@@ -57,35 +64,33 @@ def two_node_rotor(shaft_stiffness, gyroscopic=0.0):
     ks = shaft_stiffness * np.eye(2)
     skew = np.zeros((4, 4))
     skew[0, 1], skew[1, 0] = gyroscopic, -gyroscopic
-    return GeneralRotor(
-        np.diag([700.0, 700.0, 20.0, 20.0]), np.zeros((4, 4)), skew,
-        np.block([[ks, -ks], [-ks, ks]]), (1,), dofs_per_node=2,
+    return Rotor.from_matrices(
+        np.diag([700.0, 700.0, 20.0, 20.0]), np.block([[ks, -ks], [-ks, ks]]), gyroscopic=skew,
+        bearing_nodes=(1,), unknowns_per_node=2,
     )  # fmt: skip
 
 
-def test_general_rotor_of_two_nodes_is_the_jeffcott_rotor(table):
-    general = rotor_modes(table, two_node_rotor(2e8))
-    jeffcott = rotor_modes(table, JeffcottShaft(700.0, 2e8, journal_mass=20.0))
+def test_rotor_of_two_nodes_is_the_jeffcott_rotor(table):
+    general = modes(on(table, two_node_rotor(2e8)))
+    jeffcott = modes(on(table, Rotor.jeffcott(700.0, 2e8, journal_mass=20.0)))
     for ours, theirs in zip(general.eigenvalues, jeffcott.eigenvalues, strict=True):
         assert np.allclose(np.sort_complex(ours), np.sort_complex(theirs), rtol=1e-9, atol=1e-6)
     assert len(jeffcott.oscillating().lowest(2).eigenvalues.T) == 2
 
 
 def test_gyroscopic_terms_follow_the_speed(table):
-    still, turning = two_node_rotor(2e8), two_node_rotor(2e8, gyroscopic=50.0)
-    first, last = 100.0, 1500.0
-    for speed in (first, last):
-        at = table.at(speed)
-        difference = turning.state_matrix(at) - still.state_matrix(at)
+    still, turning = on(table, two_node_rotor(2e8)), on(table, two_node_rotor(2e8, 50.0))
+    for speed in (100.0, 1500.0):
+        difference = turning.state_matrix(speed) - still.state_matrix(speed)
         assert difference[4, 5] == pytest.approx(-50.0 * speed / 700.0)
         assert difference[5, 4] == pytest.approx(50.0 * speed / 700.0)
+        assert np.count_nonzero(difference) == 2
 
 
 def test_whirl_sense_takes_the_node_that_moves_most(table):
-    branches = rotor_modes(table, two_node_rotor(2e8)).oscillating()
-    planes = two_node_rotor(2e8).whirl_planes
-    assert planes == ((0, 1), (2, 3))
-    sense = branches.whirl_sense(planes)
+    branches = modes(on(table, two_node_rotor(2e8))).oscillating()
+    assert branches.planes == ((0, 1), (2, 3))
+    sense = branches.whirl_sense
     by_hand = branches.whirl_direction(0, 1)
     disc = np.linalg.norm(branches.shapes[..., :2], axis=-1)
     journal = np.linalg.norm(branches.shapes[..., 2:], axis=-1)
@@ -94,16 +99,18 @@ def test_whirl_sense_takes_the_node_that_moves_most(table):
     unstable = branches.eigenvalues[-1].real > 0.0
     assert unstable.sum() == 1
     assert sense[-1, unstable][0] > 0.5
+    assert branches.whirl[-1, unstable] == ["forward"]
+    assert branches.verdicts[-1] == "unstable"
 
 
 def test_branches_stop_at_a_gap(tmp_path):
     speeds = np.linspace(100.0, 1500.0, 15)
     table = write_table(tmp_path / "t.csv", speeds, failed=(speeds[3],))
-    assert np.array_equal(rotor_modes(table, RigidShaft(900.0)).parameter, speeds[4:])
-    assert len(rotor_thresholds(table, RigidShaft(900.0))) == 1
+    assert np.array_equal(modes(on(table, Rotor.rigid(900.0))).parameter, speeds[4:])
+    assert len(threshold_speeds(on(table, Rotor.rigid(900.0)))) == 1
     lost = write_table(tmp_path / "u.csv", speeds, failed=tuple(speeds))
     with pytest.raises(InputError, match="converged"):
-        rotor_modes(lost, RigidShaft(900.0))
+        modes(on(lost, Rotor.rigid(900.0)))
 
 
 def test_bearing_nodes_may_be_given_beside_the_file(tmp_path):
@@ -121,9 +128,9 @@ def test_bearing_nodes_may_be_given_beside_the_file(tmp_path):
 @pytest.mark.parametrize(
     ("make", "key"),
     [
-        (lambda: RigidShaft(0.0), "mass"),
-        (lambda: JeffcottShaft(1.0, -1.0), "shaft_stiffness"),
-        (lambda: JeffcottShaft(1.0, 1.0, journal_mass=-1.0), "journal_mass"),
+        (lambda: Rotor.rigid(0.0), "mass"),
+        (lambda: Rotor.jeffcott(1.0, -1.0), "shaft_stiffness"),
+        (lambda: Rotor.jeffcott(1.0, 1.0, journal_mass=-1.0), "journal_mass"),
     ],
 )
 def test_bad_rotors(make, key):

@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rotorsim.bearing.interpolation import Coefficients
 from rotorsim.bearing.table import CoefficientTable
-from rotorsim.machine.over_speed import rotor_modes, rotor_thresholds
-from rotorsim.machine.rotor import GeneralRotor
+from rotorsim.machine.machine import Machine
+from rotorsim.machine.modes import modes, threshold_speeds
+from rotorsim.machine.support import TableSupport
+from rotorsim.rotor import Rotor
 
 ROOT = Path(__file__).parents[2]
 DATA = ROOT / "tests" / "data"
@@ -39,19 +40,23 @@ def make_reference() -> dict:
         return script.compute(DATA / "ross_bearing.csv")
 
 
-def rotor_of(reference: dict) -> GeneralRotor:
-    return GeneralRotor(
-        reference["mass"], reference["damping"], reference["gyroscopic"], reference["stiffness"],
+def rotor_of(reference: dict) -> Rotor:
+    return Rotor.from_matrices(
+        reference["mass"], reference["stiffness"], reference["damping"], reference["gyroscopic"],
         bearing_nodes=tuple(reference["bearing_nodes"]),
-        dofs_per_node=reference["dofs_per_node"],
+        unknowns_per_node=reference["dofs_per_node"],
     )  # fmt: skip
+
+
+def machine_of(reference: dict) -> Machine:
+    table = CoefficientTable.from_csv(DATA / "ross_bearing.csv")
+    return Machine.on_identical(rotor_of(reference), TableSupport(table.interpolator()))
 
 
 def check_against(reference: dict) -> None:
     table = CoefficientTable.from_csv(DATA / "ross_bearing.csv")
-    rotor = rotor_of(reference)
     assert np.allclose(table.speeds, reference["speed"], rtol=1e-12)
-    branches = rotor_modes(table, rotor).oscillating()
+    branches = modes(machine_of(reference)).oscillating()
     assert branches.smooth.all()
     for row, listed in zip(branches.eigenvalues, reference["eigenvalues"], strict=True):
         theirs = np.array([complex(*pair) for pair in listed])
@@ -67,7 +72,7 @@ def check_against(reference: dict) -> None:
         found = int(apart.argmin())
         assert np.allclose(branches.damped_frequency[:, found], theirs[:, k], rtol=TOLERANCE)
         assert np.allclose(
-            branches.log_decrement[:, found], decrement[:, k], rtol=TOLERANCE, atol=1e-4
+            branches.logarithmic_decrement[:, found], decrement[:, k], rtol=TOLERANCE, atol=1e-4
         )
 
 
@@ -79,10 +84,8 @@ def test_against_stored_results_of_ross():
 
 def test_whirl_sense_against_ross():
     reference = read_reference()
-    rotor = rotor_of(reference)
-    table = CoefficientTable.from_csv(DATA / "ross_bearing.csv")
-    branches = rotor_modes(table, rotor).oscillating()
-    sense = branches.whirl_sense(rotor.whirl_planes)
+    branches = modes(machine_of(reference)).oscillating()
+    sense = branches.whirl_sense
     theirs, whirl = np.array(reference["damped_frequency"]), np.array(reference["whirl"])
     for k in range(theirs.shape[1]):
         found = int(np.abs(branches.damped_frequency - theirs[:, [k]]).max(axis=0).argmin())
@@ -95,18 +98,13 @@ def test_whirl_sense_against_ross():
 
 def test_threshold_lies_where_the_real_part_of_ross_changes_sign():
     reference = read_reference()
-    table = CoefficientTable.from_csv(DATA / "ross_bearing.csv")
-    (threshold,) = rotor_thresholds(table, rotor_of(reference))
+    (threshold,) = threshold_speeds(machine_of(reference))
     largest = [max(pair[0] for pair in row) for row in reference["eigenvalues"]]
     after = int(np.argmax(np.array(largest) > 0.0))
     assert reference["speed"][after - 1] < threshold.speed < reference["speed"][after]
     assert threshold.becomes_unstable
     assert 0.4 < threshold.whirl_frequency_ratio < 0.6
-    values = np.linalg.eigvals(
-        rotor_of(reference).state_matrix(
-            Coefficients(*table.interpolator()(threshold.speed), threshold.speed)
-        )
-    )
+    values = np.linalg.eigvals(machine_of(reference).state_matrix(threshold.speed))
     assert abs(values.real.max()) < 1e-8 * threshold.whirl_frequency
 
 

@@ -27,10 +27,10 @@ from rotorsim.orbit import (
     growth_rate,
     linearize_force,
     loaded_film,
-    rigid_rotor,
     simulate,
     steady_part,
 )
+from rotorsim.rotor import Rotor
 
 RADIUS, CLEARANCE, VISCOSITY, RATIO = 0.025, 50e-6, 0.02, 0.5
 SPEED = 12000.0 * math.pi / 30.0
@@ -61,7 +61,7 @@ def run(film: LoadedFilm, mass: float, kick: float, revolutions: float, **change
     return simulate(
         OrbitProblem(
             film.force,
-            rigid_rotor(mass),
+            Rotor.rigid(mass),
             SpeedSchedule.constant(SPEED, revolutions),
             initial_displacement=(kick * CLEARANCE, 0.0),
             bearing=film.bearing,

@@ -15,12 +15,11 @@ from rotorsim.orbit import (
     SpeedSchedule,
     constant_coefficients,
     growth_rate,
-    jeffcott_rotor,
     orbit_ellipse,
-    rigid_rotor,
     simulate,
     simulate_linear,
 )
+from rotorsim.rotor import Rotor
 
 CLEARANCE = 1e-4
 SPEED = 1000.0
@@ -52,7 +51,7 @@ def critical_mass() -> float:
 @pytest.mark.parametrize("factor", [0.9, 1.1])
 def test_free_motion_against_the_matrix_exponential(method, factor):
     mass = factor * critical_mass()
-    rotor, schedule = rigid_rotor(mass), SpeedSchedule.constant(SPEED, 10.0)
+    rotor, schedule = Rotor.rigid(mass), SpeedSchedule.constant(SPEED, 10.0)
     force = LinearForce(constant_coefficients(STIFFNESS, DAMPING), CLEARANCE, (2e-5, -1e-5))
     orbit = simulate(
         OrbitProblem(
@@ -215,7 +214,7 @@ def test_coefficients_by_speed_are_followed_through_a_run_up():
     force = LinearForce(coefficients, CLEARANCE, position)
     form = force.compiled(300.0, 900.0)
     orbit = simulate(
-        OrbitProblem(force, rigid_rotor(40.0, 1e-4), schedule, initial_displacement=(1e-6, 0.0))
+        OrbitProblem(force, Rotor.rigid(40.0, 1e-4), schedule, initial_displacement=(1e-6, 0.0))
     )
     index = np.arange(0, orbit.t.size, 37)
     exact = np.array(
@@ -234,7 +233,7 @@ def test_flexible_rotor_whirls_at_its_systems_eigenvalue():
     disk, journal, shaft = 300.0, 20.0, 8e7
     stiffness, damping = 6e7 * np.array([[1.0, 0.5], [-0.5, 1.0]]), 8e4 * np.eye(2)
     force = LinearForce(constant_coefficients(stiffness, damping), CLEARANCE)
-    rotor = jeffcott_rotor(disk, journal, shaft, damping=500.0)
+    rotor = Rotor.jeffcott(disk, shaft, journal, disc_damping=500.0)
     orbit = simulate(
         OrbitProblem(
             force, rotor, SpeedSchedule.constant(SPEED, 60.0), initial_displacement=(1e-6, 0.0)

@@ -23,15 +23,14 @@ from rotorsim.orbit import (
     cascade,
     find_equilibrium,
     growth_rate,
-    jeffcott_rotor,
     linearize_force,
     recognise,
-    rigid_rotor,
     simulate,
     steady_part,
     whirl_frequency_ratio,
 )
 from rotorsim.orbit.short_bearing import short_bearing_impedance
+from rotorsim.rotor import Rotor
 
 CLEARANCE, SPEED = 1e-4, 1000.0
 OIL = (0.0277, 0.025, 0.05, CLEARANCE)
@@ -58,7 +57,7 @@ def whirl(eps: float, factor: float, kick: float, revolutions: float, force=CLOS
     return simulate(
         OrbitProblem(
             force,
-            rigid_rotor(factor * mass),
+            Rotor.rigid(factor * mass),
             SpeedSchedule.constant(SPEED, revolutions),
             static_load=(load, 0.0),
             equilibrium=place,
@@ -114,7 +113,7 @@ def test_small_motions_follow_the_eigenvalue(force, factor):
     orbit = simulate(
         OrbitProblem(
             force,
-            rigid_rotor(m),
+            Rotor.rigid(m),
             SpeedSchedule.constant(SPEED, 15.0),
             static_load=(load, 0.0),
             equilibrium=place,
@@ -190,7 +189,7 @@ def test_unbalance_alone_makes_a_closed_orbit_once_per_turn():
     orbit = simulate(
         OrbitProblem(
             MAPPED,
-            rigid_rotor(0.5 * mass, 0.5 * mass * 0.1 * CLEARANCE),
+            Rotor.rigid(0.5 * mass, 0.5 * mass * 0.1 * CLEARANCE),
             SpeedSchedule.constant(SPEED, 100.0),
             static_load=(load, 0.0),
             equilibrium=place,
@@ -209,7 +208,7 @@ def test_touch_down_on_the_nonlinear_film():
 
 def test_oil_whip_locks_to_the_flexible_rotors_natural_frequency():
     disk, natural = 40.0, 400.0
-    rotor = jeffcott_rotor(disk, 4.0, disk * natural**2, 0.04 * disk * natural, disk * 2e-6)
+    rotor = Rotor.jeffcott(disk, disk * natural**2, 4.0, 0.04 * disk * natural, disk * 2e-6)
     orbit = simulate(
         OrbitProblem(
             ShortBearingForce(0.0125, 0.025, 0.05, CLEARANCE),
@@ -315,7 +314,7 @@ def test_orbit_on_the_map_of_a_finite_film_against_solving_it_at_each_step(finit
         simulate(
             OrbitProblem(
                 force,
-                rigid_rotor(600.0),
+                Rotor.rigid(600.0),
                 SpeedSchedule.constant(SPEED, 2.5),
                 static_load=(load, 0.0),
                 equilibrium=place,

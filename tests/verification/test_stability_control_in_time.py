@@ -16,9 +16,9 @@ from rotorsim.orbit import (
     find_equilibrium,
     growth_rate,
     linearize_force,
-    rigid_rotor,
     simulate,
 )
+from rotorsim.rotor import Rotor
 
 FILM = ShortBearingForce(viscosity=0.0277, length=0.04, radius=0.05, radial_clearance=1e-4)
 LOAD, SPEED = 3000.0, 1000.0
@@ -34,7 +34,7 @@ def run(force, displacement, revolutions=100.0, **more):
     return simulate(
         OrbitProblem(
             force,
-            rigid_rotor(MASS),
+            Rotor.rigid(MASS),
             SpeedSchedule.constant(SPEED, revolutions=revolutions),
             static_load=(LOAD, 0.0),
             equilibrium=REST,

@@ -25,7 +25,7 @@ from ...model import (
     ThermalModel,
     ThermalSettings,
 )
-from ...model.rotor import JeffcottRotor, RigidRotor, Rotor
+from ...rotor import Rotor
 from .geometry import (
     bearing_arcs,
     bearing_grooves,
@@ -288,7 +288,7 @@ def rotor(tables: ScenarioTables) -> Rotor | None:
                 f'does not go with kind = "{table.kind.value}" (its keys: {", ".join(needed)})',
                 key=f"rotor.{name}",
             )
-    made = JeffcottRotor if table.kind is RotorKind.JEFFCOTT else RigidRotor
+    made = Rotor.jeffcott if table.kind is RotorKind.JEFFCOTT else Rotor.rigid
     return made(**given, unbalance=table.unbalance)
 
 

@@ -120,14 +120,14 @@ def _loads(table: OrbitTable, rotor: RotorKind) -> list[Load]:
     loads: list[Load] = []
     if table.step is not None:
         step = table.step
-        station = _station("step", step, rotor)
-        loads.append(StepForce(_pair(step.force), step.start, _stop("step", step), station))
+        node = _node("step", step, rotor)
+        loads.append(StepForce(_pair(step.force), step.start, _stop("step", step), node))
     if table.harmonic is not None:
         wave = table.harmonic
         loads.append(
             HarmonicForce(
                 _pair(wave.force), wave.frequency, _pair(wave.phase), wave.start,
-                _stop("harmonic", wave), _station("harmonic", wave, rotor),
+                _stop("harmonic", wave), _node("harmonic", wave, rotor),
             )
         )  # fmt: skip
     if table.base_motion is not None:
@@ -146,7 +146,7 @@ def _loads(table: OrbitTable, rotor: RotorKind) -> list[Load]:
     return loads
 
 
-def _station(name: str, load: LoadTable, rotor: RotorKind) -> int:
+def _node(name: str, load: LoadTable, rotor: RotorKind) -> int:
     if load.on is Station.JOURNAL:
         return 0
     if rotor is not RotorKind.JEFFCOTT:

@@ -16,7 +16,7 @@ from pydantic import ValidationError
 from ...arguments import check_number
 from ...errors import InputError, ScenarioError
 from ...model import Bearing, Case, FilmSettings, Lubricant, Target, ThermalModel, ThermalSettings
-from ...model.rotor import Rotor
+from ...rotor import Rotor
 from ...shipped import shipped_scenarios
 from ...text import printable
 from . import build
@@ -56,7 +56,7 @@ class Scenario:
     speeds : (n,) array
         Ascending [rad/s], read-only.
     target : EccentricityTarget or LoadTarget
-    rotor : RigidRotor, JeffcottRotor or None
+    rotor : Rotor or None
     orbit : OrbitSettings or None
     stability : StabilitySettings or None
     tolerances : ToleranceSettings or None

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from ...model import BushModel, EccentricityTarget, ShaftModel, ThermalModel
-from ...model.rotor import JeffcottRotor
 from ...study.wording import RPM, ZERO_CELSIUS, number
 from . import html
 
@@ -162,9 +161,10 @@ def _rotor(scenario: Scenario) -> Iterator[tuple[str, str]]:
     rotor = scenario.rotor
     if rotor is None:
         return
-    flexible = isinstance(rotor, JeffcottRotor)
+    flexible = rotor.kind == "jeffcott"
     yield "rotor", "flexible (Jeffcott)" if flexible else "rigid"
-    yield "rotor mass per bearing", f"{number(rotor.mass)} kg"
-    yield "unbalance per bearing", f"{number(rotor.unbalance * 1e6)} g mm"
+    yield "rotor mass per bearing", f"{number(rotor.total_mass)} kg"
+    yield "unbalance per bearing", f"{number(float(abs(rotor.unbalance).sum()) * 1e6)} g mm"
     if flexible:
-        yield "shaft stiffness per bearing", f"{number(rotor.shaft_stiffness / 1e6)} MN/m"
+        stiffness = rotor.parameters["shaft_stiffness"]
+        yield "shaft stiffness per bearing", f"{number(stiffness / 1e6)} MN/m"

@@ -112,7 +112,7 @@ def _warnings(found: Results) -> list[str]:
 
     scenario = found.scenario
     top = float(scenario.speeds[-1])
-    mass = None if scenario.rotor is None else scenario.rotor.mass
+    mass = None if scenario.rotor is None else scenario.rotor.total_mass
     lines = list(found.problems)
     lines += [
         f"{point.thermal_model}, c = {number(point.radial_clearance * 1e6)} µm, "

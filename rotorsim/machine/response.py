@@ -1,0 +1,81 @@
+"""Steady response of a machine to its unbalance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ..errors import InputError
+from .machine import Machine
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class UnbalanceResponse:
+    """Synchronous motion q = Re(Q exp(i Omega t)) over speed.
+
+    Attributes
+    ----------
+    machine : Machine
+    speed : (n,) array
+        [rad/s]
+    amplitude : (n, size) complex array
+        Q of every unknown of the machine [m, rad]; NaN where a support has no coefficients.
+    """
+
+    machine: Machine
+    speed: Array
+    amplitude: ComplexArray
+
+    def at(self, node: int | str) -> ComplexArray:
+        """Complex amplitudes (n, 2) of a node's x and y [m]."""
+        first = int(self.machine.rotor.first_unknown[self.machine.rotor.node(node)])
+        return self.amplitude[:, first : first + 2]
+
+    def probe(self, node: int | str, angle: float) -> ComplexArray:
+        """Complex amplitude (n,) [m] along a direction `angle` [rad] from x towards y."""
+        return self.at(node) @ np.array([np.cos(angle), np.sin(angle)])
+
+    def major_axis(self, node: int | str) -> Array:
+        """Half the major axis (n,) of a node's elliptical orbit [m]."""
+        x, y = self.at(node).T
+        return 0.5 * (np.abs(x + 1j * y) + np.abs(np.conj(x) + 1j * np.conj(y)))
+
+
+def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> UnbalanceResponse:
+    """Steady response to the rotor's unbalance.
+
+    Parameters
+    ----------
+    machine : Machine
+    speed : (n,) array, optional
+        [rad/s]; by default the supports' tabulated speeds.
+
+    Raises
+    ------
+    InputError
+        The rotor has no unbalance.
+
+    Notes
+    -----
+    (K + i Omega D - Omega^2 M) Q = F with F = u Omega^2 (1, -i): the force turns from x to y.
+    """
+    if not np.any(machine.rotor.unbalance):
+        raise InputError("is missing: the rotor has none", key="rotor.unbalance")
+    omega = machine.speeds if speed is None else np.atleast_1d(np.asarray(speed, dtype=float))
+    force = np.zeros((omega.size, machine.size, 1), dtype=complex)
+    force[:, : machine.rotor.size, 0] = machine.rotor.unbalance_force(omega)
+    if machine.frequency_dependent:
+        z = np.array([machine.dynamic_stiffness(1j * w, float(w)) for w in omega])
+    else:
+        w = omega[:, None, None]
+        mass, damping, stiffness = machine.matrices(omega)
+        z = stiffness + 1j * w * damping - w**2 * mass
+    known = np.isfinite(z).all(axis=(-2, -1))
+    amplitude = np.full((omega.size, machine.size), np.nan, dtype=complex)
+    amplitude[known] = np.linalg.solve(z[known], force[known])[..., 0]
+    return UnbalanceResponse(machine, omega, amplitude)
