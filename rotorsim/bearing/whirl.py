@@ -12,6 +12,9 @@ from ..status import Stability
 
 Array = NDArray[np.float64]
 
+_ROUNDING = 1e-10
+"""Of the norms of K and C: a smaller coefficient of s is what films' rounding errors leave."""
+
 
 @dataclass(frozen=True)
 class WhirlThreshold:
@@ -62,7 +65,8 @@ class RouthCoefficients:
     ----------
     trace_damping, det_damping, det_stiffness : arrays
     cross : array
-        K_xx C_yy + K_yy C_xx - K_xy C_yx - K_yx C_xy, the coefficient of s.
+        K_xx C_yy + K_yy C_xx - K_xy C_yx - K_yx C_xy, the coefficient of s; 0 where it is of the
+        size of rounding errors (a film without direct stiffness: full Sommerfeld's).
     equivalent_stiffness : array
         K_e = cross/trace_damping [N/m] (Dal Eq. 23).
     det_shifted : array
@@ -98,6 +102,8 @@ def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> RouthCoeffic
     cxx, cxy, cyx, cyy = c[..., 0, 0], c[..., 0, 1], c[..., 1, 0], c[..., 1, 1]
     trace = cxx + cyy
     cross = kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy
+    size = np.linalg.norm(k, axis=(-2, -1)) * np.linalg.norm(c, axis=(-2, -1))
+    cross = np.where(np.abs(cross) <= _ROUNDING * size, 0.0, cross)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         equivalent = cross / trace
         # The difference kxx - K_e without its cancellation: the diagonal parts are the same number.

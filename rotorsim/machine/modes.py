@@ -186,11 +186,13 @@ class Modes:
         )
 
     def oscillating(self) -> Modes:
-        """Keep one branch of each conjugate pair (Im >= 0 on the whole), as a Campbell diagram."""
+        """Keep one branch of each conjugate pair (Im >= 0 on the whole), as a Campbell diagram.
+
+        A frequency below its own accuracy, a free direction's, is none.
+        """
         imaginary = self.eigenvalues.imag
-        return self.columns(
-            np.flatnonzero((imaginary.sum(axis=0) >= 0.0) & (imaginary.max(axis=0) > 0.0))
-        )
+        swings = (imaginary - self.accuracy).max(axis=0) > 0.0
+        return self.columns(np.flatnonzero((imaginary.sum(axis=0) >= 0.0) & swings))
 
 
 def modes(machine: Machine, speed: ArrayLike | None = None) -> Modes:
