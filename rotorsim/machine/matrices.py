@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -86,7 +88,7 @@ def first_order(mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> tu
     size = n + heavy.size
     a, b = np.zeros((*m.shape[:-2], size, size)), np.zeros((*m.shape[:-2], size, n))
     a[..., heavy, n + np.arange(heavy.size)] = 1.0
-    known = np.isfinite(m + d + k).all(axis=(-2, -1))
+    known = np.asarray(np.isfinite(m + d + k).all(axis=(-2, -1)))
     # The damping's action on the massless unknowns' velocities, given by the other states.
     pull, push = np.concatenate([k, d[..., heavy]], axis=-1), np.broadcast_to(np.eye(n), k.shape)
     if light.size:
@@ -132,7 +134,8 @@ def eigenvalues_with_accuracy(a: Array) -> tuple[ComplexArray, ComplexArray, Arr
     from scipy.linalg import eig, matrix_balance
 
     balanced, (scale, _) = matrix_balance(a, permute=False, separate=True)
-    values, left, right = eig(balanced, left=True, right=True, check_finite=False)
+    found: Any = eig(balanced, left=True, right=True, check_finite=False)
+    values, left, right = found
     cosine = np.abs(np.sum(left.conj() * right, axis=0))
     rounding = _ROUNDINGS * np.finfo(float).eps * np.linalg.norm(balanced)
     accuracy = rounding / np.maximum(cosine, np.finfo(float).eps)

@@ -430,12 +430,14 @@ def find_thresholds(matrix: MatrixOf, speeds: Sequence[float] | Array) -> list[T
     points = [(float(s), rate(float(s))) for s in speeds]
     # At a point without any damped mode there is no verdict to change.
     points = [point for point in points if point[1] != 0.0]
-    tolerance: dict[str, Any] = {"xtol": 1e-13 * max((p[0] for p in points), default=1.0)}
+    tolerance: dict[str, Any] = {
+        "xtol": 1e-13 * max((p[0] for p in points), default=1.0), "rtol": 1e-13,
+    }  # fmt: skip
     found = []
     for (first, low), (last, high) in pairwise(points):
         if not low * high < 0.0:
             continue
-        root: Any = brentq(rate, first, last, rtol=1e-13, **tolerance)
+        root: Any = brentq(rate, first, last, **tolerance)
         found.append(_threshold(spectrum, float(root), (first, last), low < 0.0))
     return found
 
@@ -458,7 +460,8 @@ def _threshold(
 
     for low, high in ends:
         if side * nearest(low).real < 0.0 < side * nearest(high).real:
-            found: Any = brentq(lambda s: nearest(s).real, low, high, xtol=1e-14 * root, rtol=1e-14)
+            tolerance: dict[str, Any] = {"xtol": 1e-14 * root, "rtol": 1e-14}
+            found: Any = brentq(lambda s: nearest(s).real, low, high, **tolerance)
             root = float(found)
             break
     whirl = abs(nearest(root).imag)
@@ -554,9 +557,8 @@ def _refined_crossing(at: _Spectrum, branches: Modes, i: int, k: int, order: flo
         cost = np.abs(state.values - value) / abs(value) + 1.0 - mac
         return state.taken(np.array([cost.argmin()]))
 
-    root: Any = brentq(
-        lambda s: abs(mode(s).values[0].imag) - order * s, low, high, xtol=1e-12 * high, rtol=1e-12
-    )
+    tolerance: dict[str, Any] = {"xtol": 1e-12 * high, "rtol": 1e-12}
+    root: Any = brentq(lambda s: abs(mode(s).values[0].imag) - order * s, low, high, **tolerance)
     one = mode(float(root))
     return Modes(
         np.array([float(root)]), one.values[None], one.accuracy[None], one.shapes[None],

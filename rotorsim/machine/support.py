@@ -188,7 +188,8 @@ class MatrixTable(Support):
     def _curve(self):
         from scipy.interpolate import PchipInterpolator
 
-        stacked = np.stack([self.stiffness, self.damping, self.mass], axis=1)
+        parts = [np.asarray(part) for part in (self.stiffness, self.damping, self.mass)]
+        stacked = np.stack(parts, axis=1)
         if self.table_speeds.size == 1:
             return lambda speed: np.broadcast_to(stacked[0], (*np.shape(speed), *stacked.shape[1:]))
         return PchipInterpolator(self.table_speeds, stacked, axis=0)

@@ -381,7 +381,7 @@ class _BothPlanes:
         x[0, 0], x[3, 1] = 1.0, self.sign
         y[1, 0], y[2, 1] = 1.0, -self.sign
         eye = np.eye(self.nodes)
-        return np.kron(eye, x), np.kron(eye, y)
+        return np.asarray(np.kron(eye, x), float), np.asarray(np.kron(eye, y), float)
 
     def alike(self, plane: Array) -> Array:
         """Same matrix in both planes."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -319,9 +320,9 @@ class Rotor:
         eye, turn = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
         zero = np.zeros((4, 4))
         return cls(
-            np.kron(inertia, eye), zero, np.kron(gyroscopic, turn), zero, zero,
+            _kron(inertia, eye), zero, _kron(gyroscopic, turn), zero, zero,
             (Node("left", position=a), Node("right", position=b)),
-            unbalance=np.zeros(2), bearing_nodes=(0, 1), kind="rigid_body",
+            unbalance=np.zeros(2, dtype=complex), bearing_nodes=(0, 1), kind="rigid_body",
             parameters={
                 "mass": mass, "transverse_inertia": transverse_inertia,
                 "polar_inertia": polar_inertia,
@@ -358,13 +359,13 @@ class Rotor:
         )
         eye, zero = np.eye(2), np.zeros((4, 4))
         return cls(
-            np.kron(np.diag([journal_mass, disc_mass]), eye),
-            np.kron(np.diag([0.0, disc_damping]), eye),
+            _kron(np.diag([journal_mass, disc_mass]), eye),
+            _kron(np.diag([0.0, disc_damping]), eye),
             zero,
-            np.kron(shaft_stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]), eye),
+            _kron(shaft_stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]]), eye),
             zero,
             (Node("journal"), Node("disc")),
-            unbalance=np.array([0.0, unbalance]),
+            unbalance=np.array([0.0, unbalance], dtype=complex),
             kind="jeffcott",
             parameters={
                 "disc_mass": disc_mass, "journal_mass": journal_mass,
@@ -424,19 +425,24 @@ class Rotor:
         return rotor
 
 
+def _kron(first: Array, second: Array) -> Array:
+    return np.asarray(np.kron(first, second), dtype=float)
+
+
 def _real(value: ArrayLike, label: str, source: str | None) -> Array:
     """Real, read-only copy of a matrix; an imaginary part that is exactly zero goes."""
-    array = np.asarray(value)
+    array: NDArray[Any] = np.asarray(value)
     if np.iscomplexobj(array):
-        if np.any(array.imag != 0.0):
-            row, column = np.argwhere(array.imag != 0.0)[0]
+        imaginary = np.imag(array)
+        if np.any(imaginary != 0.0):
+            row, column = np.argwhere(imaginary != 0.0)[0]
             raise InputError(
                 "must be real numbers: put viscous damping into D (a loss factor eta of a mode of "
                 "frequency w is the damping eta K/w)",
                 source=source, key=f"{label}, row {row}, column {column}",
                 value=complex(array[row, column]),
             )  # fmt: skip
-        array = array.real
+        array = np.real(array)
     result = np.array(array, dtype=float)
     result.setflags(write=False)
     return result
