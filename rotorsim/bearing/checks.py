@@ -187,8 +187,8 @@ def regime_warnings(
     roughness = case.bearing.roughness
     if min_film_thickness is not None and min_film_thickness < roughness:
         found.append(
-            f"minimum film {min_film_thickness * 1e6:.3g} um is below the roughness "
-            f"{roughness * 1e6:.3g} um: the surfaces touch"
+            f"minimum film {min_film_thickness * 1e6:.3g} µm is below the roughness "
+            f"{roughness * 1e6:.3g} µm: the surfaces touch"
         )
     anchored = case.film.inception is Inception.MAX_FILM or case.bearing.grooves
     if case.thermal.model is ThermalModel.THD and not anchored:
@@ -223,8 +223,8 @@ def _temperature_warnings(case: Case, max_temperature: float | None) -> list[str
     ):
         if value is not None and not low <= value <= high:
             found.append(
-                f"{name} {value - ZERO_CELSIUS:.1f} degC is outside the oil's range "
-                f"({low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} degC)"
+                f"{name} {value - ZERO_CELSIUS:.1f} °C is outside the oil's range "
+                f"({low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C)"
             )
     return found
 
@@ -243,7 +243,7 @@ def _held_walls(case: Case, max_temperature: float | None, heat: HeatBalance | N
     if not part > MOST_TO_HELD_WALLS:
         return []
     walls = " and ".join(name for name, power in held.items() if power > 0.0)
-    ambient = f"{case.thermal.ambient_temperature - ZERO_CELSIUS:.0f} degC"
+    ambient = f"{case.thermal.ambient_temperature - ZERO_CELSIUS:.0f} °C"
     return [
         f"{walls} held at ambient temperature, {ambient}, take {100.0 * part:.0f} % of the heat: "
         "the film's temperature is on the low side, its thickness and losses on the high side"

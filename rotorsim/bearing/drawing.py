@@ -132,7 +132,7 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
 
 def _warm_flow(numbers: DerivedNumbers) -> list[str]:
     """Limits that only the estimated warm film exceeds (the cold one has its own warnings)."""
-    at = f"with the estimated warm viscosity ({numbers.warm_temperature - ZERO_CELSIUS:.0f} degC)"
+    at = f"with the estimated warm viscosity ({numbers.warm_temperature - ZERO_CELSIUS:.0f} °C)"
     return [
         f"{name} number {warm:.4g} {at} is above {limit:g}: the film may be {what} when hot"
         for name, cold, warm, limit, what in (
@@ -203,8 +203,7 @@ def _hot_surroundings(case: Case) -> list[str]:
         if groove.supply_temperature is not None:
             temperatures[f"supply temperature of groove {place}"] = groove.supply_temperature
     return [
-        f"{name} {value - ZERO_CELSIUS:.0f} degC is above {HOT - ZERO_CELSIUS:.0f} degC: "
-        "check its unit"
+        f"{name} {value - ZERO_CELSIUS:.0f} °C is above {HOT - ZERO_CELSIUS:.0f} °C: check its unit"
         for name, value in temperatures.items()
         if value > HOT
     ]

@@ -215,9 +215,9 @@ class OperatingPoint:
         return self.status is SolveStatus.CONVERGED
 
     def _repr_html_(self) -> str:
-        from ..display import as_html
+        from .description import point_html
 
-        return as_html(self)
+        return point_html(self)
 
 
 _NESTED = ("heat_balance", "frequency_coefficients", "coefficients_full")

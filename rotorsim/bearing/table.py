@@ -113,9 +113,9 @@ class CoefficientTable:
         return delimited.write(self.dataset, path)
 
     def _repr_html_(self) -> str:
-        from ..display import as_html
+        from .description import table_html_of
 
-        return as_html(self)
+        return table_html_of(self)
 
     @property
     def extra_dimensions(self) -> tuple[str, ...]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ..model import EccentricityTarget, ThermalModel
-from ..study.wording import RPM, ZERO_CELSIUS, number
+from ..model import ThermalModel
+from ..rows import RPM, ZERO_CELSIUS, number
+from ..study.inputs import input_rows
 from .tables import grid
 
 if TYPE_CHECKING:
@@ -18,11 +19,11 @@ if TYPE_CHECKING:
 
 def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[RenderableType]:
     """Inputs, derived numbers at the highest speed, and the amount of work."""
-    yield _inputs(scenario, cases)
+    yield _inputs(scenario)
     table = grid(
         f"At {scenario.speeds[-1] * RPM:.0f} rpm",
         "model",
-        "c um",
+        "c µm",
         "U m/s",
         "Sommerfeld",
         "Reynolds",
@@ -66,7 +67,7 @@ def _heated(case: dict[str, Any]) -> bool:
 
 def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
     """Flow numbers with the viscosity at supply temperature and in the estimated warm film."""
-    table = grid("Cold, and warm (estimated)", "c um", "T C", "mPa s", "Reynolds", "Taylor")
+    table = grid("Cold, and warm (estimated)", "c µm", "T °C", "mPa s", "Reynolds", "Taylor")
     for case in filter(_heated, cases):
         clearance = number(case["radial_clearance"] * 1e6)
         table.add_row(
@@ -86,48 +87,12 @@ def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
     return table
 
 
-def _inputs(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> RenderableType:
+def _inputs(scenario: Scenario) -> RenderableType:
     table = grid(scenario.title, "", "")
     table.columns[1].justify = "left"
-    for name, text in (*_drawing(scenario, cases), *_operation(scenario, cases[0])):
-        table.add_row(name, text)
+    table.columns[1].no_wrap = False
+    for rows in input_rows(scenario).values():
+        for row in rows:
+            table.add_row(row.label, row.with_unit)
+        table.add_section()
     return table
-
-
-def _each(cases: Sequence[dict[str, Any]], key: str, factor: float) -> str:
-    """Values of the cases, each once."""
-    return ", ".join(dict.fromkeys(number(case[key] * factor) for case in cases))
-
-
-def _drawing(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[tuple[str, str]]:
-    bearing, one = scenario.bearing, cases[0]
-    yield "diameter", f"{number(one['diameter'] * 1e3)} mm"
-    ratio = number(one["length_to_diameter"], 3)
-    yield "length", f"{number(bearing.length * 1e3)} mm, L/D {ratio}"
-    yield "diametral clearance", f"{_each(cases, 'diametral_clearance', 1e3)} mm"
-    ratios = _each(cases, "clearance_ratio", 1e3)
-    yield "radial clearance", f"{_each(cases, 'radial_clearance', 1e6)} um, c/R {ratios} per mille"
-    yield "grooves, arcs", f"{len(bearing.grooves)}, {len(bearing.arcs)}"
-
-
-def _operation(scenario: Scenario, one: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    supply, target = scenario.thermal.supply_temperature, scenario.target
-    viscosity = f"{number(one['viscosity'] * 1e3)} mPa s at {number(supply - ZERO_CELSIUS)} degC"
-    yield "viscosity", viscosity
-    low, high = scenario.speeds[0] * RPM, scenario.speeds[-1] * RPM
-    many = f"{low:.0f} to {high:.0f} rpm, {len(scenario.speeds)} of them"
-    yield "speed", many if len(scenario.speeds) > 1 else f"{high:.0f} rpm"
-    if isinstance(target, EccentricityTarget):
-        yield "eccentricity ratio", number(target.eccentricity_ratio)
-    else:
-        unit = number(one["unit_load"] / 1e6, 3)
-        yield "load", f"{number(target.load / 1e3)} kN, W/(L D) {unit} MPa"
-    yield "thermal models", ", ".join(model.value for model in scenario.thermal_models)
-    if ThermalModel.THD in scenario.thermal_models:
-        heat = scenario.thermal
-        yield "oil, shaft, bush", f"{heat.inlet.value}, {heat.shaft.value}, {heat.bush.value}"
-    yield "cavitation", scenario.film.cavitation.value
-    if scenario.rotor is not None:
-        ratio = one["weight_to_load"]
-        weight = "" if ratio is None else f", weight {number(ratio, 3)} times the load"
-        yield "rotor mass per bearing", f"{number(scenario.rotor.total_mass)} kg{weight}"

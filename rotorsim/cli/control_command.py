@@ -157,7 +157,8 @@ def study_document(study: ControlStudy) -> dict[str, Any]:
 
 def study_tables(study: ControlStudy) -> list[Any]:
     """A control study for people."""
-    from .tables import RPM, grid, number
+    from ..rows import RPM, number
+    from .tables import grid
 
     said = study_document(study)
     title = f"{study.speed * RPM:.0f} rpm, {number(study.mass)} kg per bearing"
@@ -190,14 +191,14 @@ def _saturates(study: ControlStudy) -> bool:
 
 def _force_words(study: ControlStudy) -> str:
     """The actuator's force in the run in time, and what it had to do."""
-    from .tables import number
+    from ..rows import number
 
     limit = study.feedback.max_force
     of = "unlimited" if limit == float("inf") else f"of {number(limit)} N"
     said = f"largest actuator force {number(study.largest_force)} N, {of}"
     if _saturates(study):
         said = f"the actuator saturates at {number(limit)} N"
-    start = f"from {number(study.disturbance * 1e6)} um beside rest"
+    start = f"from {number(study.disturbance * 1e6)} µm beside rest"
     return f"{said}; {start}, load {number(study.load)} N"
 
 

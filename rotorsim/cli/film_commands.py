@@ -199,11 +199,11 @@ def computed_table(
 
 def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     """Say what did not converge and what left the model's range; the exit code."""
-    from ..study.wording import describe, grouped_warnings
+    from ..bearing.description import grouped_warnings, point_title
 
     bad = [point for point in points if not point.converged]
     for point in bad[:5]:
-        output.warn(f"{describe(point)}: {point.message}")
+        output.warn(f"{point_title(point)}: {point.message}")
     if len(bad) > 5:
         output.warn(f"and {len(bad) - 5} more points that are not converged")
     for text in grouped_warnings(points):

@@ -64,10 +64,10 @@ def orbit(
     Example: rotorsim orbit scenarios/orbit_limit_cycle.toml --gif
     """
     from ..files.scenario import load_scenario
+    from ..orbit.description import describe_orbit
     from ..show.orbit_pictures import write_animation, write_orbit_figures
     from ..show.writing import record_scenario
     from ..study.orbits import orbit_settings
-    from ..study.summary import describe_orbit
 
     loaded = load_scenario(scenario)
     settings, _ = orbit_settings(loaded)  # what is missing should be said before the work

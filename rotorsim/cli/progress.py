@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
-from ..study.wording import describe
+from ..bearing.description import point_title
 
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
@@ -46,7 +46,7 @@ def _bar(output: Output, total: int) -> Iterator[Progress]:
         task = bar.add_task("film points", total=total, last="")
 
         def report(done: int, _total: int, point: OperatingPoint) -> None:
-            bar.update(task, completed=done, last=describe(point))
+            bar.update(task, completed=done, last=point_title(point))
 
         yield report
         bar.update(task, last="")

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .stability_tables import curve_title
-from .tables import RPM, ZERO_CELSIUS, grid, number
+from ..rows import QUANTITIES, RPM, number
+from ..study.wording import curve_title
+from .tables import grid
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -21,13 +22,6 @@ if TYPE_CHECKING:
     from ..study.tolerances import ToleranceStudy
 
 _QUANTILES = (0.05, 0.5, 0.95)
-_SHOWN = {
-    "speed": ("rpm", RPM, 0.0),
-    "mass": ("kg", 1.0, 0.0),
-    "radial_clearance": ("um", 1e6, 0.0),
-    "applied_load": ("kN", 1e-3, 0.0),
-    "supply_temperature": ("degC", 1.0, -ZERO_CELSIUS),
-}
 
 
 def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
@@ -142,10 +136,10 @@ def plane_document(plane: Plane) -> dict[str, Any]:
 
 def plane_table(plane: Plane) -> list[RenderableType]:
     """How much of the map is stable, and its border at some places."""
-    from ..show.stability_figures import held_words
+    from ..study.planes import held_text
 
     head = f"Stability over {_name(plane.x)} and {_name(plane.y)}"
-    held = held_words(dict(plane.held))
+    held = held_text(plane.held)
     table = grid(head, "model", "stable", "unstable", "unknown")
     for model in plane.models:
         verdict = plane.values("verdict", model)
@@ -167,10 +161,10 @@ def _name(dimension: str) -> str:
 
 def _border_table(plane: Plane) -> Table:
     """For some x: the y at which the verdict changes, interpolated linearly in the growth rate."""
-    (xu, xf, xo), (yu, yf, yo) = _SHOWN[plane.x], _SHOWN[plane.y]
+    across, upwards = QUANTITIES[plane.x], QUANTITIES[plane.y]
     x, y = (np.asarray(plane.dataset[name].values, dtype=float) for name in (plane.x, plane.y))
-    names = [f"{model}: {_name(plane.y)} {yu}" for model in plane.models]
-    table = grid("Border between stable and unstable", f"{_name(plane.x)} {xu}", *names)
+    names = [f"{model}: {_name(plane.y)} {upwards.unit}" for model in plane.models]
+    table = grid("Border between stable and unstable", f"{_name(plane.x)} {across.unit}", *names)
     for i in np.unique(np.linspace(0, x.size - 1, min(x.size, 8)).round().astype(int)):
         cells = []
         for model in plane.models:
@@ -181,9 +175,9 @@ def _border_table(plane: Plane) -> Table:
             ]
             known = growth[np.isfinite(growth)]
             all_of_it = "stable" if known.size and known.max() < 0.0 else "unstable"
-            words = [_short(value * yf + yo) for value in border]
+            words = [_short(upwards.shown(value)) for value in border]
             cells.append(", ".join(words) if words else all_of_it if known.size else "-")
-        table.add_row(_short(float(x[i]) * xf + xo), *cells)
+        table.add_row(_short(across.shown(float(x[i]))), *cells)
     return table
 
 
@@ -224,8 +218,9 @@ def study_document(study: ToleranceStudy) -> dict[str, Any]:
 
 def study_tables(study: ToleranceStudy) -> list[RenderableType]:
     """Distribution, probability, and what matters."""
+    clearance = QUANTITIES["radial_clearance"].said(study.radial_clearance)
     title = (
-        f"Tolerances: {study.thermal_model}, c = {number(study.radial_clearance * 1e6)} um, "
+        f"Tolerances: {study.thermal_model}, {clearance}, "
         f"{next(iter(study.samples.inputs.values())).size} samples"
     )
     table = grid(title, "", "nominal", *(f"{100 * q:.0f} %" for q in _QUANTILES))

@@ -6,7 +6,9 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ..study.wording import RPM, VERDICTS, curve_title, number, thresholds_text, verdict_word
+from ..orbit.description import ORBIT_HEADS, ellipse_text, orbit_texts, whirl_range_text
+from ..rows import QUANTITIES, RPM, number
+from ..study.wording import VERDICTS, curve_title, thresholds_text, verdict_word
 from .tables import grid
 
 if TYPE_CHECKING:
@@ -15,13 +17,16 @@ if TYPE_CHECKING:
     from ..study.stability import StabilityCurve
 
 
+_THRESHOLD = ("critical_mass", "critical_mass_dimensionless", "whirl_frequency_ratio")
+
+
 def curve_table(curve: StabilityCurve) -> Table:
     """One curve over speed.
 
     The critical mass is a rigid rotor's: beside another rotor it would not be that rotor's limit.
     """
     rigid = curve.eigenvalues is None or curve.mass is not None
-    head = ["rpm", "M_crit kg", "M c w2/W", "whirl ratio", "verdict"] if rigid else ["rpm"]
+    head = ["rpm", *(QUANTITIES[name].head for name in _THRESHOLD), "verdict"] if rigid else ["rpm"]
     if curve.eigenvalues is not None:
         head += ["growth 1/s", "whirl rpm"] if rigid else ["verdict", "growth 1/s", "whirl rpm"]
     table = grid(curve_title(curve), *head)
@@ -46,12 +51,8 @@ def _threshold_cells(curve: StabilityCurve, index: int) -> list[str]:
     said = VERDICTS.get(verdict)
     if verdict == "threshold" and curve.mass is not None:
         said = "stable" if curve.mass < mass else "unstable"
-    return [
-        number(mass),
-        number(curve.critical_mass_dimensionless[index]),
-        number(curve.whirl_frequency_ratio[index], 3),
-        said or "stable below",
-    ]
+    values = (QUANTITIES[name].text(getattr(curve, name)[index]) for name in _THRESHOLD)
+    return [*values, said or "stable below"]
 
 
 def summary_table(curves: Sequence[StabilityCurve]) -> Table:
@@ -67,61 +68,36 @@ def summary_table(curves: Sequence[StabilityCurve]) -> Table:
 
 
 def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
-    """One line for each orbit (see `pipeline.summary.describe_orbit`)."""
-    head = ["model", "run", "rpm", "turns", "eps", "growth 1/s"]
+    """One line for each orbit (see `rotorsim.orbit.description.describe_orbit`)."""
     expected = any("eigenvalue_growth_rate" in row for row in rows)
-    head += ["expected", "outcome"] if expected else ["outcome"]
-    by = "; expected: by the eigenvalues" if expected else ""
-    table = grid(f"Orbits (eps: the largest{by})", *head)
+    columns = ["model", "run", "speed", "turns", "eccentricity", "growth"]
+    columns += ["expected", "outcome"] if expected else ["outcome"]
+    by = " (expected: by the eigenvalues)" if expected else ""
+    table = grid(f"Orbits{by}", *(ORBIT_HEADS[name] for name in columns))
     for row in rows:
-        first, last = (speed * RPM for speed in row["speed"])
-        speeds = f"{last:.0f}" if math.isclose(first, last) else f"{first:.0f}-{last:.0f}"
-        table.add_row(
-            row["thermal_model"],
-            row["kind"].removesuffix(" speed"),
-            speeds,
-            number(row["revolutions"]),
-            number(row["max_eccentricity_ratio"], 3),
-            number(row["growth_rate"]),
-            *([number(row.get("eigenvalue_growth_rate"))] if expected else []),
-            row["status"].value.replace("_", " "),
-        )
+        texts = orbit_texts(row)
+        texts["run"] = texts["run"].removesuffix(" speed")
+        texts["speed"] = texts["speed"].replace(" to ", "-")
+        table.add_row(*(texts[name] for name in columns))
     return table
 
 
 def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
     """What each run came to: whirl, ellipse, least film; and what its force takes for granted."""
-    table = grid("What they come to", "model", "whirl ratio", "swing um", "ellipse um", "h_min um")
+    table = grid("What they come to", "model", "whirl ratio", "swing µm", "ellipse µm", "h_min µm")
     notes = []
     for row in rows:
         table.add_row(
             row["thermal_model"],
             number(row["whirl_frequency_ratio"]),
             number(row["amplitude"] * 1e6),
-            _ellipse_text(row["whirl"] or row["synchronous"]),
+            ellipse_text(row["whirl"] or row["synchronous"]),
             number(row["min_film"] * 1e6),
         )
-        found = row["whirl_range"]
-        if found is not None:
-            first, last, most = (
-                f"{found[key] * RPM:.0f}"
-                for key in ("first_speed", "last_speed", "strongest_speed")
-            )
-            size = f"{number(found['amplitude'] * 1e6, 3)} um"
-            pitch = f"{found['frequency'] * RPM / 60.0:.1f} Hz"
-            notes.append(
-                f"{row['thermal_model']}: whirls from {first} to {last} rpm, most at {most} rpm: "
-                f"{size} at {pitch}"
-            )
+        if row["whirl_range"] is not None:
+            notes.append(f"{row['thermal_model']}: {whirl_range_text(row['whirl_range'])}")
         notes += [f"{row['thermal_model']}: {row['message']}"] if row["message"] else []
     return [table, *notes]
-
-
-def _ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
-    if ellipse is None:
-        return "-"
-    axes = f"{number(ellipse['semi_major'] * 1e6, 3)} x {number(ellipse['semi_minor'] * 1e6, 3)}"
-    return f"{axes} {ellipse['direction']}"
 
 
 def _nan(values: Any) -> Any:

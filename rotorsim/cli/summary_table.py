@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from rich.text import Text
 
-from ..study.wording import RPM, ZERO_CELSIUS, curve_title, number, thresholds_text, verdict_at_top
+from ..rows import QUANTITIES, RPM
+from ..study.wording import curve_title, thresholds_text, verdict_at_top
 from .output import as_typed
 from .stability_tables import orbit_table
 from .tables import grid
@@ -19,14 +20,8 @@ if TYPE_CHECKING:
 
     from ..study.stability import StabilityCurve
 
-_COLUMNS = (
-    ("load kN", "load", 1e-3),
-    ("h_min um", "min_film_thickness", 1e6),
-    ("p_max MPa", "max_pressure", 1e-6),
-    ("loss kW", "power_loss", 1e-3),
-    ("L/min", "side_flow", 6e4),
-)
-"""Head, key and factor from SI of what isothermal and THD are compared by."""
+_COLUMNS = ("load", "min_film_thickness", "max_pressure", "power_loss", "side_flow")
+"""What isothermal and THD are compared by."""
 LEAST_WALL_SHARE = 0.005
 """Of the heat through the walls, from which on it is said."""
 
@@ -60,24 +55,17 @@ def heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> T
 
     Beside a rotor that is not rigid no critical mass is shown.
     """
-    heads = [head for head, _, _ in _COLUMNS]
-    table = grid(
-        f"At {rows[0]['speed'] * RPM:.0f} rpm",
-        "c um",
-        "model",
-        *heads,
-        "T_max C",
-        *(["M_cr kg"] if rigid else []),
-    )
+    columns = (*_COLUMNS, "max_temperature", *(["critical_mass"] if rigid else []))
+    heads = [QUANTITIES[name].head.replace("side flow", "flow") for name in columns]
+    table = grid(f"At {rows[0]['speed'] * RPM:.0f} rpm", "c µm", "model", *heads)
     for row in rows:
         models = _models(row)
         for place, model in enumerate(models):
             one = row[model]
             table.add_row(
-                number(row["radial_clearance"] * 1e6) if place == 0 else "",
+                QUANTITIES["radial_clearance"].text(row["radial_clearance"]) if place == 0 else "",
                 model,
-                *(number(one[key] * factor) for _, key, factor in _COLUMNS),
-                number(one["max_temperature"] - ZERO_CELSIUS),
+                *(QUANTITIES[key].text(one[key], 4) for key in (*_COLUMNS, "max_temperature")),
                 *([_mass(one)] if rigid else []),
             )
         if {"isothermal", "thd"} <= set(models):
@@ -94,7 +82,7 @@ def walls_lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
             if share is not None and math.isfinite(share) and abs(share) >= LEAST_WALL_SHARE:
                 yield (
                     f"Through bush and shaft go {100.0 * share:.0f} % of the heat ({model}, "
-                    f"c = {number(row['radial_clearance'] * 1e6)} um)"
+                    f"{QUANTITIES['radial_clearance'].said(row['radial_clearance'])})"
                 )
 
 
@@ -104,13 +92,13 @@ def _models(row: Mapping[str, Any]) -> list[str]:
 
 def _mass(one: Mapping[str, Any]) -> str:
     if one["critical_mass"] is not None:
-        return number(one["critical_mass"])
+        return QUANTITIES["critical_mass"].text(one["critical_mass"])
     said = "" if one["stability"] is None else one["stability"].value
     return said.removeprefix("always_").replace("_", " ") or "-"
 
 
 def _changes(cold: Mapping[str, Any], hot: Mapping[str, Any], *, rigid: bool) -> list[str]:
-    texts = [_percent(cold[key], hot[key]) for _, key, _ in _COLUMNS]
+    texts = [_percent(cold[key], hot[key]) for key in _COLUMNS]
     mass = [_percent(cold["critical_mass"], hot["critical_mass"])] if rigid else []
     return [*texts, "", *mass]
 

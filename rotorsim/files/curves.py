@@ -88,7 +88,7 @@ def _known(value: Any) -> bool:
 
 def _words(name: str, value: Any) -> str:
     if name == "radial_clearance":
-        return f"radial clearance {float(value) * 1e6:.6g} um"
+        return f"radial clearance {float(value) * 1e6:.6g} µm"
     shown = value if isinstance(value, str) else f"{float(value):.6g}"
     return f"{name.replace('_', ' ')} {shown}"
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..bearing.table import CoefficientTable
 from ..bearing.whirl import rigid_thresholds, routh_coefficients
 from ..errors import InputError
+from ..rows import result_html, table_html
 from .rates import growth_rate_map
 
 if TYPE_CHECKING:
@@ -76,9 +77,15 @@ class StabilityMap:
         return dataset
 
     def _repr_html_(self) -> str:
-        from ..display import as_html
-
-        return as_html(self)
+        sizes = ", ".join(f"{size} × {name}" for name, size in self.dataset.sizes.items())
+        verdict = self.dataset["verdict"]
+        rows = []
+        for model in verdict["thermal_model"].values:
+            part = verdict.sel(thermal_model=model).values
+            shares = (100.0 * float(np.mean(part == code)) for code in (STABLE, UNSTABLE, UNKNOWN))
+            rows.append([str(model), *(f"{share:.1f} %" for share in shares)])
+        head = ("model", "stable", "unstable", "unknown")
+        return result_html("Stability map", f"<p>{sizes}</p>", table_html(head, rows))
 
     def save(self, path: str | Path) -> Path:
         """Write the map as netCDF 4."""

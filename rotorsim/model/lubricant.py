@@ -165,7 +165,7 @@ _D2270 = (
 def _kinematic_at_100(nu40: float, viscosity_index: float) -> float:
     """Kinematic viscosity at 100 degC [mm2/s] of an oil of `nu40` mm2/s and the given index."""
     if not (nu40 > 5.0 and math.isfinite(nu40)):
-        raise InputError("must be above 5 (mm2/s at 40 degC)", key="lubricant.iso_vg", value=nu40)
+        raise InputError("must be above 5 (mm2/s at 40 °C)", key="lubricant.iso_vg", value=nu40)
     if not 0.0 <= viscosity_index <= 100.0:
         raise InputError(
             "must be 0 to 100 (give two viscosity points for oils outside)",

@@ -271,7 +271,7 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         when, x, y_end = solution.touch
         status = OrbitStatus.TOUCH_DOWN
         message = (
-            f"film below {problem.minimum_film * 1e6:.3g} um after {when:.6g} s "
+            f"film below {problem.minimum_film * 1e6:.3g} µm after {when:.6g} s "
             f"({problem.schedule.angle_at(when) / (2.0 * np.pi):.4g} revolutions)"
         )
         if isinstance(problem.force, LinearForce):

@@ -152,9 +152,9 @@ class Orbit:
         return self.eccentricity / self.radial_clearance
 
     def _repr_html_(self) -> str:
-        from ..display import as_html
+        from .description import orbit_html
 
-        return as_html(self)
+        return orbit_html(self)
 
     def part(self, first: int, last: int | None = None, step: int = 1) -> Orbit:
         """Cut out samples first to last (excluded), every `step`-th, as an orbit of their own."""

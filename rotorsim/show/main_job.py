@@ -14,9 +14,10 @@ import numpy as np
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError, RotorsimError
 from ..files.scenario.settings import OrbitForce, SpeedRamp
+from ..orbit.description import describe_orbit
 from ..study import orbits as orbit_steps
 from ..study.stability import StabilityCurve, stability_curves
-from ..study.summary import describe_orbit, expected_growth, heating_effect
+from ..study.summary import expected_growth, heating_effect
 from .film_motion import film_in_motion
 
 if TYPE_CHECKING:

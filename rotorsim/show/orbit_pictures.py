@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import InputError
-from .recordings import heading, orbit_tracks, track_names
+from ..orbit.description import run_names, run_title
+from .recordings import orbit_tracks
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -56,7 +57,7 @@ def orbit_figures(
     from . import figures as plots
 
     yield "orbits", plots.orbit_plot(orbit_pictures(orbits), title, steady_only)
-    for orbit, name in zip(orbits, track_names(orbits), strict=True):
+    for orbit, name in zip(orbits, run_names(orbits), strict=True):
         if orbit.constant_speed:
             continue
         try:
@@ -69,7 +70,7 @@ def orbit_figures(
             f"cascade_{name}",
             plots.spectrum_cascade(
                 rows.speed[order], rows.frequency[order], rows.amplitude[order],
-                f"{title}\n{heading(name)}",
+                f"{title}\n{run_title(name)}",
             ),
         )  # fmt: skip
 
@@ -95,7 +96,7 @@ def write_animation(
     shown = [
         MovingOrbit(
             name=orbit.thermal_model,
-            title=heading(name),
+            title=run_title(name),
             time=orbit.t,
             revolutions=orbit.revolutions,
             speed=orbit.speed,
@@ -106,6 +107,6 @@ def write_animation(
             equilibrium=np.asarray(orbit.equilibrium),
             boundary=orbit.boundary,
         )
-        for orbit, name in zip(orbits, track_names(orbits), strict=True)
+        for orbit, name in zip(orbits, run_names(orbits), strict=True)
     ]
     return animate_orbits(shown, path, title, slow_only=steady_only)

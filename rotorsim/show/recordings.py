@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..study.summary import describe_orbit
-from ..study.wording import RPM
+from ..orbit.description import describe_orbit, run_names, run_title, whirl_range_text
+from ..rows import RPM
 
 if TYPE_CHECKING:
     from ..orbit import Orbit
@@ -60,11 +60,11 @@ def orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None =
     """
     rows = [describe_orbit(orbit) for orbit in orbits] if rows is None else rows
     lines: list[str] = []
-    for orbit, name, row in zip(orbits, track_names(orbits), rows, strict=True):
+    for orbit, name, row in zip(orbits, run_names(orbits), rows, strict=True):
         first, last = (round(speed * RPM) for speed in row["speed"])
         rpm = f"{first} rpm" if first == last else f"{first} to {last} rpm"
         lines.append(
-            f"- **{heading(name)}, {rpm}, {row['revolutions']:.4g} turns:"
+            f"- **{run_title(name)}, {rpm}, {row['revolutions']:.4g} turns:"
             f" {orbit.status.value.replace('_', ' ')}**"
         )
         lines += [f"  - {fact}" for fact in _seen(row)]
@@ -85,12 +85,7 @@ def _seen(row: dict[str, Any]) -> list[str]:
             f" {whirl['semi_major'] * MICRO:.4g} x {whirl['semi_minor'] * MICRO:.4g} µm"
         )
     if row["whirl_range"] is not None:
-        found = row["whirl_range"]
-        facts.append(
-            f"whirls from {found['first_speed'] * RPM:.0f} to {found['last_speed'] * RPM:.0f} rpm,"
-            f" most at {found['strongest_speed'] * RPM:.0f} rpm: {found['amplitude'] * MICRO:.3g}"
-            f" µm at {found['frequency'] / (2.0 * np.pi):.4g} Hz"
-        )
+        facts.append(whirl_range_text(row["whirl_range"]))
     facts.append(
         f"thinnest film {row['min_film'] * MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
     )
@@ -107,7 +102,7 @@ def spectrum_pictures(orbits: Sequence[Orbit]) -> list[SpectrumPicture]:
     from .recording import SpectrumPicture
 
     pictures = []
-    for orbit, name in zip(orbits, track_names(orbits), strict=True):
+    for orbit, name in zip(orbits, run_names(orbits), strict=True):
         if not orbit.constant_speed or orbit.status is OrbitStatus.SETTLED or not orbit.t.size:
             continue
         try:
@@ -132,7 +127,7 @@ def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
     from .recording import CascadePicture
 
     pictures = []
-    for orbit, name in zip(orbits, track_names(orbits), strict=True):
+    for orbit, name in zip(orbits, run_names(orbits), strict=True):
         if orbit.constant_speed:
             continue
         try:
@@ -145,25 +140,12 @@ def cascade_pictures(orbits: Sequence[Orbit]) -> list[CascadePicture]:
         frequency = np.linspace(0.0, 2.0 * float(rows.speed.max()), CASCADE_LINES)
         known = zip(rows.frequency[order], rows.amplitude[order], strict=True)
         amplitude = np.array([np.interp(frequency, f, a, right=0.0) for f, a in known])
-        pictures.append(CascadePicture(heading(name), rows.speed[order], frequency, amplitude))
+        pictures.append(CascadePicture(run_title(name), rows.speed[order], frequency, amplitude))
     return pictures
 
 
-def track_names(orbits: Sequence[Orbit]) -> list[str]:
-    """Name `orbits` by thermal model and run, and number them where that is not enough."""
-    names: list[str] = []
-    for orbit in orbits:
-        run = "run_up" if orbit.speed[-1] > orbit.speed[0] else "coast_down"
-        base = orbit.thermal_model if orbit.constant_speed else f"{orbit.thermal_model}_{run}"
-        name, number = base, 2
-        while name in names:
-            name, number = f"{base}_{number}", number + 1
-        names.append(name)
-    return names
-
-
 def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
-    """Tracks of `orbits`, called by their `track_names`."""
+    """Tracks of `orbits`, called by their `run_names`."""
     from .recording import OrbitTrack
 
     return [
@@ -183,9 +165,9 @@ def orbit_tracks(orbits: Sequence[Orbit]) -> list[OrbitTrack]:
             minimum_film=orbit.min_film,
             boundary=orbit.boundary,
             once_per_turn=once_per_turn(orbit),
-            title=heading(name),
+            title=run_title(name),
         )
-        for orbit, name in zip(orbits, track_names(orbits), strict=True)
+        for orbit, name in zip(orbits, run_names(orbits), strict=True)
     ]
 
 
@@ -202,12 +184,6 @@ def once_per_turn(orbit: Orbit) -> np.ndarray | None:
         return None
     points = poincare_points(steady)
     return np.column_stack([points.x, points.y])
-
-
-def heading(name: str) -> str:
-    """Write a track's name for people."""
-    words = name.replace("_", " ").replace("run up", "run-up").replace("coast down", "coast-down")
-    return words.replace("thd", "THD")
 
 
 @contextmanager

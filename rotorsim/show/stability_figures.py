@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..study.planes import Plane
-from ..study.wording import RPM, ZERO_CELSIUS
+from ..rows import QUANTITIES, RPM
+from ..study.planes import Plane, held_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,22 +17,6 @@ if TYPE_CHECKING:
     from ..study.control import ControlStudy
     from ..study.stability import Campbell
     from ..study.tolerances import ToleranceStudy
-
-_AXES = {
-    "speed": ("shaft speed [rpm]", RPM, 0.0),
-    "mass": ("rotor mass per bearing [kg]", 1.0, 0.0),
-    "radial_clearance": ("radial clearance [µm]", 1e6, 0.0),
-    "applied_load": ("load per bearing [kN]", 1e-3, 0.0),
-    "supply_temperature": ("supply temperature [°C]", 1.0, -ZERO_CELSIUS),
-}
-"""Label, factor and offset from SI to what a figure shows."""
-_WORDS = {
-    "speed": ("{:.0f} rpm", RPM, 0.0),
-    "mass": ("{:.4g} kg per bearing", 1.0, 0.0),
-    "radial_clearance": ("c = {:.4g} µm", 1e6, 0.0),
-    "applied_load": ("{:.4g} kN", 1e-3, 0.0),
-    "supply_temperature": ("oil at {:.4g} °C", 1.0, -ZERO_CELSIUS),
-}
 
 
 def save_figures(
@@ -48,28 +32,19 @@ def save_figures(
     ]
 
 
-def held_words(held: dict[str, float]) -> str:
-    """``1200 kg per bearing, c = 100 µm``: what a plane holds."""
-    words = [_WORDS[name] for name in held]
-    return ", ".join(
-        text.format(value * factor + offset)
-        for (text, factor, offset), value in zip(words, held.values(), strict=True)
-    )
-
-
 def plane_figure(plane: Plane, title: str = "") -> Figure:
     """Map of a plane: stable, unstable, and what only heating makes unstable."""
     from .figures import PlaneAxis, stability_plane
 
     def axis(name: str) -> PlaneAxis:
-        label, factor, offset = _AXES[name]
+        quantity = QUANTITIES[name]
         values = np.asarray(plane.dataset[name].values, dtype=float)
-        return PlaneAxis(label, values * factor + offset)
+        return PlaneAxis(quantity.axis, values * quantity.factor + quantity.offset)
 
     models = plane.models
     cold = "isothermal" if "isothermal" in models else models[0]
     hot = "thd" if "thd" in models else models[-1]
-    heading = "\n".join(text for text in (title, held_words(dict(plane.held))) if text)
+    heading = "\n".join(text for text in (title, held_text(plane.held)) if text)
     heated = plane.growth(hot) if hot != cold else None
     return stability_plane(axis(plane.x), axis(plane.y), plane.growth(cold), heated, title=heading)
 
@@ -93,7 +68,7 @@ def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tu
             )
             for curve in group
         ]
-        held = held_words({name: value for name, value in key if np.isfinite(value)})
+        held = held_text({name: value for name, value in key if np.isfinite(value)})
         heading = "\n".join(text for text in (title, held) if text)
         name = "campbell" if len(groups) == 1 else f"campbell_{number}"
         yield name, campbell_diagram(shown, title=heading)

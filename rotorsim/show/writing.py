@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..rows import RPM, ZERO_CELSIUS
 from ..study.orbits import orbit_settings
 from ..study.stability import map_planes
-from ..study.wording import RPM, ZERO_CELSIUS
 from .job_figures import write_figures
 from .main_job import Announce, Attempts, Results, compute, summary
 from .recordings import cascade_pictures, orbit_notes, orbit_tracks, record, spectrum_pictures
@@ -123,7 +123,7 @@ def map_pictures(results: Results) -> list[MapPicture]:
         return []
     return [
         MapPicture(
-            title=f"rigid rotor, c = {plane.radial_clearance * 1e6:.4g} um",
+            title=f"rigid rotor, c = {plane.radial_clearance * 1e6:.4g} µm",
             speed=plane.speed,
             mass=plane.mass,
             verdict=classify(plane.isothermal_growth, plane.heated_growth),
@@ -167,9 +167,9 @@ def markdown_summary(results: Results) -> str:
     lines = [*conclusion(facts), *([f"Film points: {counted}.", ""] if counted else [])]
     for row in facts["heating"]:
         lines += [
-            f"## c = {row['radial_clearance'] * 1e6:.4g} um, {row['speed'] * RPM:.0f} rpm",
+            f"## c = {row['radial_clearance'] * 1e6:.4g} µm, {row['speed'] * RPM:.0f} rpm",
             "",
-            "| model | load N | friction N | p max MPa | T max degC | critical mass kg |",
+            "| model | load N | friction N | p max MPa | T max °C | critical mass kg |",
             "| --- | --- | --- | --- | --- | --- |",
         ]
         for model in results.scenario.thermal_models:

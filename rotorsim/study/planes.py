@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model import LoadTarget, MeshSize
+from ..rows import QUANTITIES
 from .axes import tabulate_over
 
 if TYPE_CHECKING:
@@ -75,6 +76,11 @@ class Plane:
             return None
         found = self.dataset["destabilised_by_heating"].transpose(self.x, self.y)
         return np.asarray(found.values, dtype=bool)
+
+
+def held_text(held: Mapping[str, float]) -> str:
+    """``1200 kg, c = 100 µm``: what a plane or a diagram holds."""
+    return ", ".join(QUANTITIES[name].said(value) for name, value in held.items())
 
 
 def plane_of_scenario(
@@ -228,7 +234,7 @@ def _film_values(
     if name == "radial_clearance":
         own = list(scenario.radial_clearances)
         if not on_axis and len(own) > 1:
-            listed = ", ".join(f"{value * 1e6:.4g} um" for value in own)
+            listed = ", ".join(f"{value * 1e6:.4g} µm" for value in own)
             raise InputError(f"say which; the scenario has {listed}", key=name)
         middle = float(np.mean(own))
         return (

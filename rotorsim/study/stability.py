@@ -13,7 +13,7 @@ from ..machine.machine import Machine
 from ..machine.modes import Modes, ThresholdSpeed, known_speeds, modes, spectrum, threshold_speeds
 from ..machine.support import TableSupport
 from ..rotor import Rotor
-from .wording import number
+from ..rows import number
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from .wording import verdict_at, verdict_over_range
@@ -12,73 +11,8 @@ if TYPE_CHECKING:
 
     from ..bearing.operating_point import OperatingPoint
     from ..bearing.table import CoefficientTable
-    from ..orbit import Ellipse, Orbit
+    from ..orbit import Orbit
     from .stability import StabilityCurve
-
-
-def describe_orbit(orbit: Orbit) -> dict[str, Any]:
-    """Run and outcome of one orbit: status, extent, growth, whirl (SI).
-
-    ``growth_rate`` is that of small motions at the start. ``amplitude``, ``whirl`` (ellipse at the
-    whirl's frequency) and ``synchronous`` (at the shaft's) are those of the steady part; without
-    one, ``amplitude`` is that of the whole run. ``whirl_range`` says where a run through the speeds
-    whirls.
-    """
-    from ..orbit import analyse
-
-    found = analyse(orbit)
-    growth, recognised = found.growth, found.recognition
-    ratio = None if growth is None else growth.whirl_frequency_ratio
-    if recognised is not None and recognised.whirl_frequency_ratio is not None:
-        ratio = recognised.whirl_frequency_ratio
-    steady = None if recognised is None else recognised.steady_from
-    return {
-        "thermal_model": orbit.thermal_model,
-        "kind": _kind(orbit),
-        "radial_clearance": orbit.radial_clearance,
-        "speed": [float(orbit.speed[0]), float(orbit.speed[-1])],
-        "duration": float(orbit.t[-1]),
-        "revolutions": float(orbit.revolutions[-1]),
-        "status": orbit.status,
-        "message": orbit.message,
-        "max_eccentricity_ratio": float(orbit.eccentricity_ratio.max()),
-        "growth_rate": None if growth is None else growth.rate,
-        "whirl_frequency_ratio": ratio,
-        "orbit_kind": orbit.kind,
-        "force": orbit.force_model,
-        "note": orbit.note,
-        "steady_from": None if steady is None else float(orbit.t[min(steady, orbit.t.size - 1)]),
-        "period": None if recognised is None else recognised.period,
-        "amplitude": found.amplitude,
-        "whirl": _ellipse(found.whirl),
-        "synchronous": _ellipse(found.synchronous),
-        "min_film": found.min_film,
-        "min_film_time": found.min_film_time,
-        "whirl_range": None if found.whirl_range is None else asdict(found.whirl_range),
-        "events": [
-            {"name": event.name, "time": event.time, "x": event.x, "y": event.y}
-            for event in orbit.events
-        ],
-    }
-
-
-def _kind(orbit: Orbit) -> str:
-    if orbit.constant_speed:
-        return "constant speed"
-    return "run-up" if orbit.speed[-1] > orbit.speed[0] else "coast-down"
-
-
-def _ellipse(ellipse: Ellipse | None) -> dict[str, Any] | None:
-    if ellipse is None:
-        return None
-    return {
-        "order": ellipse.order,
-        "semi_major": ellipse.semi_major,
-        "semi_minor": abs(ellipse.semi_minor),
-        "inclination": ellipse.inclination,
-        "direction": "forward" if ellipse.semi_minor >= 0.0 else "backward",
-        "center": list(ellipse.center),
-    }
 
 
 def expected_growth(table: CoefficientTable, orbit: Orbit, mass: float) -> float | None:

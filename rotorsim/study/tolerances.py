@@ -18,8 +18,8 @@ from ..machine.support import ConstantSupport, TableSupport
 from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..model import Case, LoadTarget, MeshSize
 from ..rotor import Rotor
+from ..rows import RPM
 from .axes import changed, with_mesh
-from .wording import RPM
 
 if TYPE_CHECKING:
     from ..bearing.interpolation import CoefficientInterpolator

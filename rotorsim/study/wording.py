@@ -1,20 +1,16 @@
-"""Results in words and short numbers, the same on the terminal, in the report and in notebooks."""
+"""The verdict on a rotor in words: at the highest speed, over the range, and where it changes."""
 
 from __future__ import annotations
 
 import math
-import re
 from typing import TYPE_CHECKING
 
-from ..model.lubricant import ZERO_CELSIUS as ZERO_CELSIUS
+from ..bearing import description
+from ..rows import RPM, number
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from ..bearing.operating_point import OperatingPoint
     from .stability import StabilityCurve
 
-RPM = 30.0 / math.pi
 VERDICTS = {
     "always_stable": "stable at any mass",
     "always_unstable": "unstable at any mass",
@@ -23,75 +19,15 @@ VERDICTS = {
 }
 
 
-def number(value: float | None, digits: int = 4) -> str:
-    """Short text of a number, below a million without an exponent; a dash where there is none.
-
-    Examples
-    --------
-    >>> number(1234.5678), number(18000.0), number(2010.0, 3), number(7.0e6), number(None)
-    ('1235', '18000', '2010', '7.000e+06', '-')
-    """
-    if value is None or not math.isfinite(value):
-        return "-"
-    if abs(value) >= 1e6:
-        return f"{value:.{digits - 1}e}"
-    return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"
-
-
-def describe(point: OperatingPoint) -> str:
-    """``thd 100 um 15000 rpm``, and the status where it is not converged."""
-    text = (
-        f"{point.thermal_model} {point.radial_clearance * 1e6:.4g} um {point.speed * RPM:.0f} rpm"
-    )
-    return text if point.converged else f"{text}: {point.status.value}"
-
-
-def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
-    """One line for each kind of warning: its last wording, and at how many points from where on.
-
-    Warnings that differ in their numbers alone are of one kind.
-    """
-    kinds: dict[str, list[tuple[OperatingPoint, str]]] = {}
-    for point in points:
-        for text in point.warnings:
-            kinds.setdefault(re.sub(r"[\d.]+", "0", text), []).append((point, text))
-    lines = []
-    for found in kinds.values():
-        (first, _), (last, text) = found[0], found[-1]
-        where = describe(first)
-        if len(found) > 1:
-            where = f"{len(found)} of {len(points)} points, from {where} to {describe(last)}"
-        lines.append(f"{text} (at {where})")
-    return lines
-
-
-def wall_share_text(point: OperatingPoint) -> str:
-    """Part of the heat that leaves through bush and shaft [%]; a dash without heating."""
-    heat = point.heat_balance
-    if heat is None or not math.isfinite(heat.wall_share):
-        return "-"
-    return str(round(100.0 * heat.wall_share))
-
-
-def critical_mass_text(point: OperatingPoint) -> str:
-    """Critical mass [kg], or the verdict where no mass is critical."""
-    if point.critical_mass is None:
-        return {"always_stable": "stable", "always_unstable": "unstable"}.get(
-            point.stability or "", "-"
-        )
-    return number(point.critical_mass)
-
-
 def curve_title(curve: StabilityCurve) -> str:
-    """``thd, c = 100 um``, and what else the table was stacked along."""
+    """``thd, c = 100 µm``, and what else the table was stacked along."""
     extra = [
         f"{name} = {number(value)}"
         for name, value in curve.choices.items()
         if name not in ("thermal_model", "radial_clearance")
     ]
-    clearance = curve.choices["radial_clearance"]
-    given = [f"c = {number(clearance * 1e6)} um"] if math.isfinite(clearance) else []
-    return ", ".join([str(curve.choices["thermal_model"]), *given, *extra])
+    choices = curve.choices
+    return description.curve_title(choices["thermal_model"], choices["radial_clearance"], *extra)
 
 
 def verdict_word(growth_rate: float) -> str:

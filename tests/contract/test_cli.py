@@ -179,10 +179,11 @@ def test_check_says_what_would_run(tiny, tmp_path, here):
 def test_check_shows_the_drawing_and_warns_of_what_is_mistyped(tiny, here):
     said = flat(here("check", tiny).stdout)
     for text in (
-        "diameter 100 mm",
-        "80 mm, L/D 0.8",
-        "0.2 mm",
-        "c/R 2 per mille",
+        "journal radius 50 mm",
+        "length 80 mm",
+        "length to diameter 0.8",
+        "diametral clearance 0.2 mm",
+        "clearance over radius 2 ‰",
         "Cold, and warm",
     ):
         assert text in said
@@ -390,7 +391,7 @@ def test_run_shows_a_summary_that_fits_the_terminal(tiny, here):
     assert max(map(len, done.stdout.splitlines())) <= 100
     for words in ("8 film points, 8 converged", "by heating", "threshold rpm", "tiny.rrd"):
         assert words in done.stdout
-    for column in ("h_min um", "loss kW", "L/min", "M_cr kg"):
+    for column in ("h_min µm", "loss kW", "L/min", "M_crit kg"):
         assert column in done.stdout
     table = done.stdout.split("At 15000 rpm")[1].split("Stability")[0]
     assert max(map(len, table.splitlines())) <= 90
@@ -449,9 +450,9 @@ def test_a_closed_pipe_is_no_error(tmp_path):
 def test_warnings_that_differ_in_numbers_alone_are_told_once():
     import dataclasses
 
+    from rotorsim.bearing.description import grouped_warnings
     from rotorsim.bearing.operating_point import failed_point
     from rotorsim.files.scenario import Scenario
-    from rotorsim.study.wording import grouped_warnings
 
     case = Scenario.from_text(TINY).case(thermal_model="thd")
     points = [

@@ -90,5 +90,5 @@ def test_held_with_enough_force_and_lost_with_too_little(here):
     assert said["largest_force"] == pytest.approx(20.0)
     assert said["saturates"] is True
     weak = here("control", "small.toml", "--max-force", "20 N", "--disturbance", "30 um")
-    assert "the actuator saturates at 20 N; from 30 um beside rest" in " ".join(weak.stdout.split())
+    assert "the actuator saturates at 20 N; from 30 µm beside rest" in " ".join(weak.stdout.split())
     assert "does not hold the rotor" in weak.stderr

@@ -98,11 +98,11 @@ def test_a_hot_film_has_a_larger_reynolds_number() -> None:
 def test_other_limits() -> None:
     rough = replace(CASE, bearing=replace(CASE.bearing, roughness=2e-6))
     (line,) = regime_warnings(rough, OMEGA, min_film_thickness=1e-6)
-    assert "1 um is below the roughness 2 um" in line
+    assert "1 µm is below the roughness 2 µm" in line
     (line,) = regime_warnings(CASE, OMEGA, max_temperature=433.15)
-    assert "160.0 degC is outside the oil's range" in line
+    assert "160.0 °C is outside the oil's range" in line
     cold = replace(CASE, thermal=replace(CASE.thermal, supply_temperature=243.15))
-    assert any("supply temperature -30.0 degC" in line for line in regime_warnings(cold, 1.0))
+    assert any("supply temperature -30.0 °C" in line for line in regime_warnings(cold, 1.0))
 
 
 def test_a_thermal_film_wants_an_anchor() -> None:
@@ -136,7 +136,7 @@ def test_held_walls_that_take_most_of_the_heat() -> None:
         return regime_warnings(case, OMEGA, max_temperature=hottest, heat_balance=heat)
 
     (line,) = found(300.0, 480.0)
-    assert line.startswith("bush and shaft held at ambient temperature, 40 degC, take 78 %")
+    assert line.startswith("bush and shaft held at ambient temperature, 40 °C, take 78 %")
     assert found(240.0, 240.0) == ()
     assert found(300.0, 480.0, hottest=322.0) == ()  # nothing that heating changes
     conducting = ThermalSettings(bush=BushModel.CONDUCTION, shaft=ShaftModel.INSULATED)

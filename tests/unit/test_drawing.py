@@ -106,7 +106,7 @@ def test_a_groove_without_supply_and_hot_surroundings() -> None:
     case = replace(
         with_bearing(grooves=(hot,)), thermal=ThermalSettings(ambient_temperature=434.15)
     )
-    assert [text.split(" degC")[0] for text in drawing_warnings(case)] == [
+    assert [text.split(" °C")[0] for text in drawing_warnings(case)] == [
         "ambient temperature 161",
         "supply temperature of groove 1 160",
     ]

@@ -26,9 +26,9 @@ from rotorsim.orbit import (
     orbit_ellipse,
     simulate_pieces,
 )
+from rotorsim.orbit.description import describe_orbit
 from rotorsim.rotor import Rotor
 from rotorsim.study.orbits import orbit_problem, simulate_orbit
-from rotorsim.study.summary import describe_orbit
 from rotorsim.study.sweep import tabulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

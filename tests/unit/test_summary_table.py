@@ -39,17 +39,17 @@ def shown(**options: bool) -> str:
 
 def test_film_losses_flow_and_what_heating_makes_of_them():
     text = shown()
-    for words in ("At 6000 rpm", "h_min um", "68", "3.3", "-50.0 %", "99", "2380", "stable"):
+    for words in ("At 6000 rpm", "h_min µm", "68", "3.3", "-50.0 %", "99", "2380", "stable"):
         assert words in text
 
 
 @pytest.mark.parametrize(("rigid", "there"), [(True, True), (False, False)])
 def test_no_critical_mass_beside_a_rotor_that_is_not_rigid(rigid, there):
-    assert ("M_cr" in shown(rigid=rigid)) == there
+    assert ("M_crit" in shown(rigid=rigid)) == there
 
 
 def test_the_part_of_the_heat_that_goes_through_the_walls():
     (line,) = walls_lines(ROWS)
-    assert line == "Through bush and shaft go 78 % of the heat (thd, c = 90 um)"
+    assert line == "Through bush and shaft go 78 % of the heat (thd, c = 90 µm)"
     little = [{**ROWS[0], "thd": model(wall_heat_share=1e-7)}]
     assert list(walls_lines(little)) == []

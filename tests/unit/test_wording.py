@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from rotorsim.rows import RPM, number
 from rotorsim.study.stability import StabilityCurve
 from rotorsim.study.wording import (
-    RPM,
-    number,
     thresholds_text,
     verdict_at,
     verdict_at_top,

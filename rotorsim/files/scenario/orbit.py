@@ -208,6 +208,6 @@ def _check_start(table: OrbitTable, clearance: float, eccentricity_ratio: float 
     if math.hypot(*table.initial_displacement) >= farthest:
         raise InputError(
             "starts outside the clearance: from the equilibrium it must be less than "
-            f"{farthest * 1e6:.4g} um",
+            f"{farthest * 1e6:.4g} µm",
             key="orbit.initial_displacement",
         )

@@ -174,7 +174,7 @@ class Scenario:
             ", ".join(f"{one * factor:g}" for one in self.radial_clearances) for factor in (1, 1e6)
         )
         raise ScenarioError(
-            f"must be one of the clearances that the scenario lists: {allowed} m ({said} um)",
+            f"must be one of the clearances that the scenario lists: {allowed} m ({said} µm)",
             source=self.source,
             key="radial_clearance",
             value=wanted,

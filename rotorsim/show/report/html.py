@@ -1,9 +1,9 @@
-"""Pieces of HTML: tables, figures, sections. Every text that comes in is escaped here."""
+"""Pieces of HTML: figures, sections, lists. Every text that comes in is escaped here."""
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -12,41 +12,6 @@ if TYPE_CHECKING:
 
 _SVG_LIMIT = 400_000
 """Bytes from which on a figure is embedded as pixels: long orbits make long paths."""
-
-GOOD, BAD = "good", "bad"
-"""Classes of the cells that carry a verdict; the words in them say the same without colour."""
-_VERDICT_CLASSES = {"stable": GOOD, "unstable": BAD, "converged": GOOD}
-
-
-def table(
-    head: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "", *, texts: int = 1
-) -> str:
-    """Table; the first `texts` columns are set to the left, the others as numbers."""
-    columns = "".join(
-        f'<th scope="col"{"" if place < texts else " class=number"}>{escape(name)}</th>'
-        for place, name in enumerate(head)
-    )
-    body = "\n".join(f"<tr>{_cells(row, texts)}</tr>" for row in rows)
-    titled = f"<caption>{escape(caption)}</caption>" if caption else ""
-    top = f"<thead><tr>{columns}</tr></thead>" if any(head) else ""
-    return f"<table>{titled}{top}<tbody>\n{body}\n</tbody></table>"
-
-
-def _cells(row: Sequence[str], texts: int) -> str:
-    cells = []
-    for place, text in enumerate(row):
-        kind = _VERDICT_CLASSES.get(text, "" if place < texts else "number")
-        cells.append(f"<td{f' class={kind}' if kind else ''}>{escape(text)}</td>")
-    return "".join(cells)
-
-
-def facts(rows: Iterable[tuple[str, str]]) -> str:
-    """Two columns: what, and its value with the unit."""
-    body = "\n".join(
-        f'<tr><th scope="row">{escape(name)}</th><td>{escape(value)}</td></tr>'
-        for name, value in rows
-    )
-    return f'<table class="facts"><tbody>\n{body}\n</tbody></table>'
 
 
 def figure(drawn: Figure, caption: str) -> str:

@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ...atomic import write_text
+from ...bearing.description import grouped_warnings, point_title
 from ...bearing.table_data import CONVENTIONS
-from ...study.wording import RPM, grouped_warnings, number
+from ...rows import facts_html
+from ...study.inputs import input_rows
 from . import html, results
-from .inputs import inputs
 from .verdict import headline
 
 if TYPE_CHECKING:
+    from ...files.scenario import Scenario
     from ..main_job import Results
 
 _CAPTIONS = {
@@ -77,7 +79,7 @@ def _parts(found: Results, when: datetime.datetime | None) -> Iterator[str]:
     yield f"<header>\n<h1>{escape(scenario.title)}</h1>\n{_origin(found, when)}\n</header>"
     yield headline(found)
     yield html.section("Warnings", html.listing(_warnings(found), "warnings") or _no_warnings())
-    yield html.section("Inputs", inputs(scenario))
+    yield html.section("Inputs", _inputs(scenario))
     yield html.section(
         "Margins",
         results.margins(found.curves),
@@ -115,10 +117,7 @@ def _warnings(found: Results) -> list[str]:
     mass = None if scenario.rotor is None else scenario.rotor.total_mass
     lines = list(found.problems)
     lines += [
-        f"{point.thermal_model}, c = {number(point.radial_clearance * 1e6)} µm, "
-        f"{point.speed * RPM:.0f} rpm: {point.status.value.replace('_', ' ')}. {point.message}"
-        for point in found.points
-        if not point.converged
+        f"{point_title(point)}. {point.message}" for point in found.points if not point.converged
     ]
     lines += grouped_warnings(found.points)
     already = " ".join(lines)
@@ -150,6 +149,11 @@ def _tolerances(found: Results) -> str:
         f"The scenario gives tolerances ({inputs_given}); all numbers here are for the nominal "
         f"values. What the tolerances make of the threshold: rotorsim stability {name} --tolerances"
     )
+
+
+def _inputs(scenario: Scenario) -> str:
+    blocks = map(facts_html, input_rows(scenario).values())
+    return f'<div class="columns">{"".join(blocks)}</div>'
 
 
 def _no_warnings() -> str:

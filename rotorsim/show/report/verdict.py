@@ -4,14 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...study.wording import (
-    RPM,
-    ZERO_CELSIUS,
-    curve_title,
-    number,
-    verdict_at_top,
-    verdict_over_range,
-)
+from ...bearing.description import point_text, point_title
+from ...rows import RPM
+from ...study.wording import curve_title, verdict_at_top, verdict_over_range
 from . import html
 
 if TYPE_CHECKING:
@@ -74,16 +69,10 @@ def extremes(points: Sequence[OperatingPoint]) -> str:
     if not known:
         return ""
     thin = min(known, key=lambda point: point.min_film_thickness)
-    text = f" Thinnest film {number(thin.min_film_thickness * 1e6, 3)} µm ({_where(thin)})"
+    text = f" Thinnest film {point_text(thin, 'min_film_thickness')} µm ({point_title(thin)})"
     heated = [point for point in known if point.heat_balance is not None]
     if not heated:
         return f"{text}; heating was not computed."
     hot = max(heated, key=lambda point: point.max_temperature)
-    return (
-        f"{text}, hottest oil {number(hot.max_temperature - ZERO_CELSIUS, 3)} °C ({_where(hot)})."
-    )
-
-
-def _where(point: OperatingPoint) -> str:
-    clearance = number(point.radial_clearance * 1e6)
-    return f"{point.thermal_model}, c = {clearance} µm, {point.speed * RPM:.0f} rpm"
+    hottest = point_text(hot, "max_temperature")
+    return f"{text}, hottest oil {hottest} °C ({point_title(hot)})."

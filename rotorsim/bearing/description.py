@@ -1,0 +1,150 @@
+"""Operating points and coefficient tables as text: rows for terminal, report and notebooks."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..rows import QUANTITIES, RPM, Row, facts_html, number, result_html, table_html
+
+if TYPE_CHECKING:
+    from .operating_point import OperatingPoint
+    from .table import CoefficientTable
+
+POINT_ROWS = (
+    "eccentricity_ratio", "attitude_angle", "load", "sommerfeld_number", "min_film_thickness",
+    "max_pressure", "max_temperature", "mean_temperature", "shaft_temperature",
+    "outlet_temperature", "friction_force", "power_loss", "side_flow", "critical_mass",
+    "whirl_frequency_ratio", "wall_heat_share", "heat_imbalance",
+)  # fmt: skip
+"""Quantities of an operating point, in the order in which they are shown."""
+_THERMAL = ("shaft_temperature", "outlet_temperature", "wall_heat_share", "heat_imbalance")
+"""Left out of a point's rows where they are not known."""
+COEFFICIENT_HEAD = ("rpm", "Kxx", "Kxy", "Kyx", "Kyy", "Cxx", "Cxy", "Cyx", "Cyy")
+
+
+def point_title(point: OperatingPoint) -> str:
+    """``thd, c = 100 µm, 15000 rpm``, and the status where it is not converged."""
+    return curve_title(
+        point.thermal_model,
+        point.radial_clearance,
+        f"{point.speed * RPM:.0f} rpm" + ("" if point.converged else f": {point_status(point)}"),
+    )
+
+
+def curve_title(thermal_model: str, radial_clearance: float, *more: str) -> str:
+    """``thd, c = 100 µm``, and what else is said of a curve; an unknown clearance is left out."""
+    known = math.isfinite(radial_clearance)
+    clearance = [QUANTITIES["radial_clearance"].said(radial_clearance)] if known else []
+    return ", ".join([thermal_model, *clearance, *more])
+
+
+def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
+    """One line for each kind of warning: its last wording, and at how many points from where on.
+
+    Warnings that differ in their numbers alone are of one kind.
+    """
+    kinds: dict[str, list[tuple[OperatingPoint, str]]] = {}
+    for point in points:
+        for text in point.warnings:
+            kinds.setdefault(re.sub(r"[\d.]+", "0", text), []).append((point, text))
+    lines = []
+    for found in kinds.values():
+        (first, _), (last, text) = found[0], found[-1]
+        where = point_title(first)
+        if len(found) > 1:
+            where = f"{len(found)} of {len(points)} points, from {where} to {point_title(last)}"
+        lines.append(f"{text} (at {where})")
+    return lines
+
+
+def point_status(point: OperatingPoint) -> str:
+    """Status in words."""
+    return point.status.value.replace("_", " ")
+
+
+def point_text(point: OperatingPoint, name: str, digits: int | None = None) -> str:
+    """One of a point's `QUANTITIES` as text, in the unit shown; a dash where it is not known."""
+    if name == "wall_heat_share":
+        heat = point.heat_balance
+        known = heat is not None and math.isfinite(heat.wall_share)
+        return str(round(100.0 * heat.wall_share)) if heat is not None and known else "-"
+    if name == "critical_mass" and point.critical_mass is None:
+        return {"always_stable": "stable", "always_unstable": "unstable"}.get(
+            point.stability or "", "-"
+        )
+    return QUANTITIES[name].text(getattr(point, name), digits)
+
+
+def point_rows(point: OperatingPoint) -> list[Row]:
+    """What a point comes to, row by row: equilibrium, film, heat, rigid rotor, solver."""
+    rows = []
+    for name in POINT_ROWS:
+        digits = QUANTITIES[name].digits
+        text = point_text(point, name, 4 if digits == 3 else digits)
+        if text != "-" or name not in _THERMAL:
+            rows.append(Row(QUANTITIES[name].label, text, QUANTITIES[name].unit))
+    return [
+        *rows,
+        Row("iterations", str(point.iterations)),
+        Row("residual", number(point.residual, 2)),
+    ]
+
+
+def matrix_rows(point: OperatingPoint) -> list[tuple[str, str, str, str]]:
+    """K and C row by row: name, two values, unit."""
+    return [
+        (f"{letter} {axis}x {axis}y", f"{row[0]:.5g}", f"{row[1]:.5g}", unit)
+        for letter, matrix, unit in (("K", point.stiffness, "N/m"), ("C", point.damping, "N s/m"))
+        for axis, row in zip("xy", np.asarray(matrix), strict=True)
+    ]
+
+
+def point_html(point: OperatingPoint) -> str:
+    """Operating point for notebooks."""
+    return result_html(
+        f"{point_title(point)}" + (": converged" if point.converged else ""),
+        facts_html(point_rows(point)),
+        table_html(("", "", "", ""), matrix_rows(point)),
+        notes=(point.message, *point.warnings),
+    )
+
+
+def coefficient_tables(table: CoefficientTable) -> Iterator[tuple[str, list[list[str]]]]:
+    """For each curve of a table its title and, under `COEFFICIENT_HEAD`, K [MN/m], C [kN s/m]."""
+    for index in np.ndindex(table.converged.shape[:-1]):
+        names = {
+            name: table.dataset[name].values[place]
+            for name, place in zip(table.choices, index, strict=True)
+        }
+        title = curve_title(str(names["thermal_model"]), float(names["radial_clearance"]))
+        stiffness, damping = table.stiffness[index] / 1e6, table.damping[index] / 1e3
+        yield (
+            title,
+            [
+                [f"{speed * RPM:.0f}", *(number(float(v)) for v in (*k.ravel(), *c.ravel()))]
+                for speed, k, c in zip(table.speeds, stiffness, damping, strict=True)
+            ],
+        )
+
+
+def table_html_of(table: CoefficientTable) -> str:
+    """Coefficient table for notebooks: of many speeds the lowest, the middle and the highest."""
+    sizes = ", ".join(f"{table.dataset.sizes[name]} × {name}" for name in table.dataset["kxx"].dims)
+    low, high = table.speeds[0] * RPM, table.speeds[-1] * RPM
+    good, total, last = int(table.converged.sum()), table.converged.size, table.speeds.size - 1
+    shown = table
+    if last >= 12:
+        shown = type(table)(table.dataset.isel(speed=[0, last // 2, last]))
+    return result_html(
+        str(table.dataset.attrs.get("title", "Coefficient table")),
+        f"<p>{sizes}; {low:.0f} to {high:.0f} rpm; {good} of {total} points converged</p>",
+        *(
+            table_html(COEFFICIENT_HEAD, rows, f"{title}: K in MN/m, C in kN s/m", texts=0)
+            for title, rows in coefficient_tables(shown)
+        ),
+    )

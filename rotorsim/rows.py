@@ -1,0 +1,172 @@
+"""Results as text: one table of quantities with their units, short numbers, rows, HTML tables.
+
+Terminal, report, figures, recordings and notebooks take labels, units and digits from here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import NamedTuple
+
+RPM = 30.0 / math.pi
+"""Revolutions per minute in one rad/s."""
+ZERO_CELSIUS = 273.15
+"""[K]"""
+
+
+def number(value: float | None, digits: int = 4) -> str:
+    """Short text of a number, below a million without an exponent; a dash where there is none.
+
+    Examples
+    --------
+    >>> number(1234.5678), number(18000.0), number(2010.0, 3), number(7.0e6), number(None)
+    ('1235', '18000', '2010', '7.000e+06', '-')
+    """
+    if value is None or not math.isfinite(value):
+        return "-"
+    if abs(value) >= 1e6:
+        return f"{value:.{digits - 1}e}"
+    return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """How a quantity is shown: the value times `factor` plus `offset`, in `unit`.
+
+    Attributes
+    ----------
+    label, symbol : str
+        In words, and short for the head of a column.
+    unit : str
+    factor, offset : float
+        From SI to `unit`.
+    digits : int
+        In tables.
+    """
+
+    label: str
+    symbol: str
+    unit: str = ""
+    factor: float = 1.0
+    offset: float = 0.0
+    digits: int = 4
+
+    @property
+    def head(self) -> str:
+        """Head of a column: symbol and unit."""
+        return f"{self.symbol} {self.unit}".strip()
+
+    @property
+    def axis(self) -> str:
+        """Title of a figure's axis."""
+        return f"{self.label} [{self.unit or '-'}]"
+
+    def shown(self, value: float) -> float:
+        """Convert an SI value to the unit shown."""
+        return value * self.factor + self.offset
+
+    def text(self, value: float | None, digits: int | None = None) -> str:
+        """Write an SI value in the unit shown, without the unit."""
+        if value is None:
+            return "-"
+        shown = self.shown(value)
+        if self.unit == "rpm" and math.isfinite(shown):
+            return f"{shown:.0f}"
+        return number(shown, digits or self.digits)
+
+    def said(self, value: float | None) -> str:
+        """Write an SI value with its unit: ``c = 100 µm``."""
+        name = f"{self.symbol} = " if len(self.symbol) == 1 else ""
+        return f"{name}{self.text(value, 4)} {self.unit}".strip()
+
+
+QUANTITIES = {
+    "speed": Quantity("shaft speed", "", "rpm", RPM),
+    "radial_clearance": Quantity("radial clearance", "c", "µm", 1e6),
+    "applied_load": Quantity("load per bearing", "", "kN", 1e-3),
+    "supply_temperature": Quantity("supply temperature", "T_in", "°C", 1.0, -ZERO_CELSIUS),
+    "mass": Quantity("rotor mass per bearing", "", "kg"),
+    "eccentricity_ratio": Quantity("eccentricity ratio", "ε", digits=3),
+    "attitude_angle": Quantity("attitude angle", "φ", "°", 180.0 / math.pi, digits=3),
+    "load": Quantity("load", "load", "kN", 1e-3),
+    "sommerfeld_number": Quantity("Sommerfeld number", "S"),
+    "min_film_thickness": Quantity("minimum film thickness", "h_min", "µm", 1e6, digits=3),
+    "max_pressure": Quantity("maximum pressure", "p_max", "MPa", 1e-6, digits=3),
+    "max_temperature": Quantity("maximum temperature", "T_max", "°C", 1.0, -ZERO_CELSIUS, digits=3),
+    "mean_temperature": Quantity("mean temperature", "T_mean", "°C", 1.0, -ZERO_CELSIUS, digits=3),
+    "shaft_temperature": Quantity(
+        "shaft temperature", "T_shaft", "°C", 1.0, -ZERO_CELSIUS, digits=3
+    ),
+    "outlet_temperature": Quantity(
+        "oil outlet temperature", "T_out", "°C", 1.0, -ZERO_CELSIUS, digits=3
+    ),
+    "friction_force": Quantity("friction force", "friction", "N"),
+    "power_loss": Quantity("power loss", "loss", "kW", 1e-3),
+    "side_flow": Quantity("side flow", "side flow", "L/min", 6e4),
+    "wall_heat_share": Quantity("heat through the walls", "to walls", "%", 100.0),
+    "heat_imbalance": Quantity("heat imbalance", "imbalance", "%", 100.0, digits=2),
+    "critical_mass": Quantity("critical mass per bearing", "M_crit", "kg"),
+    "critical_mass_dimensionless": Quantity("dimensionless critical mass", "M c ω²/W"),
+    "whirl_frequency_ratio": Quantity("whirl frequency ratio", "whirl ratio", digits=3),
+    "growth_rate": Quantity("growth rate", "growth", "1/s"),
+    "threshold_speed": Quantity("threshold speed", "threshold", "rpm", RPM),
+}
+"""By the name of the attribute, JSON key or table variable (SI)."""
+
+
+class Row(NamedTuple):
+    """One result for people: what, its value, its unit."""
+
+    label: str
+    value: str
+    unit: str = ""
+
+    @property
+    def with_unit(self) -> str:
+        """Value and unit; degrees without a space."""
+        return f"{self.value}{'' if self.unit in ('', '°') else ' '}{self.unit}"
+
+
+def facts_html(rows: Iterable[Row]) -> str:
+    """HTML table of two columns: what, and its value with the unit."""
+    body = "\n".join(
+        f'<tr><th scope="row">{escape(row.label)}</th><td>{escape(row.with_unit)}</td></tr>'
+        for row in rows
+    )
+    return f'<table class="facts"><tbody>\n{body}\n</tbody></table>'
+
+
+_VERDICT_CLASSES = {"stable": "good", "unstable": "bad", "converged": "good"}
+"""Classes of the cells that carry a verdict; the words in them say the same without colour."""
+
+
+def table_html(
+    head: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "", *, texts: int = 1
+) -> str:
+    """HTML table; the first `texts` columns are set to the left, the others as numbers."""
+    columns = "".join(
+        f'<th scope="col"{"" if place < texts else " class=number"}>{escape(name)}</th>'
+        for place, name in enumerate(head)
+    )
+    body = "\n".join(f"<tr>{_cells(row, texts)}</tr>" for row in rows)
+    titled = f"<caption>{escape(caption)}</caption>" if caption else ""
+    top = f"<thead><tr>{columns}</tr></thead>" if any(head) else ""
+    return f"<table>{titled}{top}<tbody>\n{body}\n</tbody></table>"
+
+
+def _cells(row: Sequence[str], texts: int) -> str:
+    cells = []
+    for place, text in enumerate(row):
+        kind = _VERDICT_CLASSES.get(text, "" if place < texts else "number")
+        cells.append(f"<td{f' class={kind}' if kind else ''}>{escape(text)}</td>")
+    return "".join(cells)
+
+
+def result_html(title: str, *parts: str, notes: Iterable[str] = ()) -> str:
+    """Fragment of HTML for notebooks: a title, tables, and notes."""
+    said = "".join(f"<p>{escape(note)}</p>" for note in notes if note)
+    inside = "\n".join(part for part in parts if part)
+    return f"<div><strong>{escape(title)}</strong>\n{inside}\n{said}</div>"

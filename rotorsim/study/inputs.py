@@ -1,0 +1,179 @@
+"""What goes into a calculation, with units, for `rotorsim check` and the report."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from ..bearing.drawing import STANDARD_GRAVITY
+from ..model import BushModel, EccentricityTarget, LoadTarget, ShaftModel, ThermalModel
+from ..rows import RPM, ZERO_CELSIUS, Row, number
+
+if TYPE_CHECKING:
+    from ..files.scenario import Scenario
+    from ..model import Bearing
+
+Rows = list[Row]
+
+
+def input_rows(scenario: Scenario) -> dict[str, Rows]:
+    """Everything that the results rest on, defaults included, by topic."""
+    return {
+        "bearing": _bearing(scenario),
+        "oil": _oil(scenario),
+        "film": _film(scenario),
+        "operation": _operation(scenario),
+    }
+
+
+def _millimetres(value: float) -> str:
+    return f"{number(value * 1e3)} mm"
+
+
+def _micrometres(value: float) -> str:
+    return f"{number(value * 1e6)} µm"
+
+
+def _celsius(value: float) -> str:
+    return f"{number(value - ZERO_CELSIUS)} °C"
+
+
+def _degrees(value: float) -> str:
+    return f"{number(math.degrees(value))}°"
+
+
+def _bearing(scenario: Scenario) -> Rows:
+    bearing, clearances = scenario.bearing, scenario.radial_clearances
+    rows = [
+        Row("journal radius", _millimetres(bearing.journal_radius)),
+        Row("length", _millimetres(bearing.length)),
+        Row("length to diameter", number(bearing.length / bearing.diameter)),
+        Row("radial clearance", ", ".join(map(_micrometres, clearances))),
+        Row("diametral clearance", ", ".join(_millimetres(2.0 * c) for c in clearances)),
+        Row("clearance over radius", ", ".join(_per_mille(bearing, scenario))),
+    ]
+    if bearing.bush_outer_radius is not None:
+        rows.append(Row("bush outer radius", _millimetres(bearing.bush_outer_radius)))
+    for place, groove in enumerate(bearing.grooves, start=1):
+        length = bearing.length if groove.length is None else groove.length
+        rows.append(
+            Row(
+                f"groove {place}",
+                f"at {_degrees(groove.center)}, {_degrees(groove.extent)} wide, "
+                f"{_millimetres(length)} long, {number(groove.supply_pressure / 1e3)} kPa",
+            )
+        )
+    for place, arc in enumerate(bearing.arcs, start=1):
+        rows.append(
+            Row(
+                f"lobe {place}",
+                f"{_degrees(arc.start)} to {_degrees(arc.end)}, preload {number(arc.preload)}, "
+                f"offset {number(arc.offset)}",
+            )
+        )
+    if not bearing.grooves and not bearing.arcs:
+        rows.append(Row("bore", "plain, 360°"))
+    if any(bearing.tilt):
+        rows.append(Row("tilt", ", ".join(f"{number(angle * 1e3)} mrad" for angle in bearing.tilt)))
+    if bearing.roughness:
+        rows.append(Row("roughness", _micrometres(bearing.roughness)))
+    return rows
+
+
+def _per_mille(bearing: Bearing, scenario: Scenario) -> list[str]:
+    ratios = [c / bearing.journal_radius for c in scenario.radial_clearances]
+    return [f"{number(1e3 * ratio)} ‰" for ratio in ratios]
+
+
+def _oil(scenario: Scenario) -> Rows:
+    oil, supply = scenario.lubricant, scenario.thermal.supply_temperature
+    temperatures = sorted({supply, 40.0 + ZERO_CELSIUS, 100.0 + ZERO_CELSIUS})
+    low, high = oil.temperature_range
+    rows = [
+        Row(f"viscosity at {_celsius(t)}", f"{number(float(oil.viscosity(t)) * 1e3)} mPa s")
+        for t in temperatures
+        if low <= t <= high
+    ]
+    return [
+        *_grade(scenario),
+        *rows,
+        Row("density", f"{number(oil.density)} kg/m³"),
+        Row("specific heat", f"{number(oil.specific_heat)} J/(kg K)"),
+        Row("thermal conductivity", f"{number(oil.thermal_conductivity)} W/(m K)"),
+    ]
+
+
+def _grade(scenario: Scenario) -> Rows:
+    """The ISO VG grade as the scenario's text has it: the law that follows from it keeps none."""
+    given = tomllib.loads(scenario.text).get("lubricant", {})
+    if "iso_vg" not in given:
+        return []
+    index = given.get("viscosity_index")
+    more = "" if index is None else f", viscosity index {number(index)}"
+    return [Row("oil", f"ISO VG {number(given['iso_vg'])}{more}")]
+
+
+def _film(scenario: Scenario) -> Rows:
+    film, thermal = scenario.film, scenario.thermal
+    mesh = film.mesh
+    rows = [
+        Row("cavitation", film.cavitation.value.replace("_", " ")),
+        Row("start of the film", film.inception.value.replace("_", " ")),
+        Row(
+            "cells around, along, across",
+            f"{mesh.circumferential} × {mesh.axial} × {mesh.cross_film}",
+        ),
+        Row("thermal models", ", ".join(model.value for model in scenario.thermal_models)),
+        Row("supply temperature", _celsius(thermal.supply_temperature)),
+    ]
+    if ThermalModel.THD not in scenario.thermal_models:
+        return rows
+    rows += [
+        Row("ambient temperature", _celsius(thermal.ambient_temperature)),
+        Row("oil at the inlet", thermal.inlet.value),
+        Row("shaft", thermal.shaft.value.replace("_", " ")),
+        Row("bush", thermal.bush.value),
+        Row("friction of the ruptured film", film.ruptured_friction.value),
+    ]
+    if thermal.shaft_temperature is not None and thermal.shaft is not ShaftModel.AMBIENT:
+        rows.append(Row("shaft temperature", _celsius(thermal.shaft_temperature)))
+    if thermal.bush is BushModel.CONDUCTION:
+        rows += [
+            Row("bush conductivity", f"{number(thermal.bush_conductivity)} W/(m K)"),
+            Row("bush heat transfer", f"{number(thermal.bush_heat_transfer)} W/(m² K)"),
+        ]
+    return rows
+
+
+def _operation(scenario: Scenario) -> Rows:
+    speeds, target = scenario.speeds, scenario.target
+    many = f"{speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm, {len(speeds)} values"
+    rows = [Row("speed", many if len(speeds) > 1 else f"{speeds[0] * RPM:.0f} rpm")]
+    if isinstance(target, EccentricityTarget):
+        rows.append(Row("eccentricity ratio (given)", number(target.eccentricity_ratio)))
+    else:
+        rows.append(Row("static load (given)", f"{number(target.load / 1e3)} kN"))
+        unit = target.load / (scenario.bearing.length * scenario.bearing.diameter)
+        rows.append(Row("specific load W/(L D)", f"{number(unit / 1e6, 3)} MPa"))
+    if scenario.load_direction:
+        rows.append(Row("load direction", _degrees(scenario.load_direction)))
+    rows += list(_rotor(scenario))
+    if scenario.rotor is not None and isinstance(target, LoadTarget):
+        weight = scenario.rotor.total_mass * STANDARD_GRAVITY / target.load
+        rows.append(Row("rotor's weight over load", number(weight, 3)))
+    return rows
+
+
+def _rotor(scenario: Scenario) -> Iterator[Row]:
+    rotor = scenario.rotor
+    if rotor is None:
+        return
+    flexible = rotor.kind == "jeffcott"
+    yield Row("rotor", "flexible (Jeffcott)" if flexible else "rigid")
+    yield Row("rotor mass per bearing", f"{number(rotor.total_mass)} kg")
+    yield Row("unbalance per bearing", f"{number(float(abs(rotor.unbalance).sum()) * 1e6)} g mm")
+    if flexible:
+        stiffness = rotor.parameters["shaft_stiffness"]
+        yield Row("shaft stiffness per bearing", f"{number(stiffness / 1e6)} MN/m")
