@@ -49,6 +49,10 @@ def replacing(path: str | Path) -> Iterator[Path]:
         if target.exists():
             shutil.copymode(target, temporary)
         temporary.replace(target)
+    except OSError as error:
+        if error.errno is None or error.filename not in (None, str(temporary)):
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error  # not the temporary's name
     finally:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)

@@ -2,11 +2,42 @@
 
 from __future__ import annotations
 
-__all__ = ["main"]
+import signal
+import sys
+import warnings
+from types import FrameType
+from typing import NoReturn
+
+__all__ = ["Terminated", "main"]
+
+
+class Terminated(KeyboardInterrupt):
+    """The process was asked to end: temporary files go, as after an interruption by the user."""
+
+    exit_code = 128 + signal.SIGTERM
 
 
 def main() -> None:
     """Run the command line and end the process with its exit code."""
-    from .app import app
+    _clean_up_when_terminated()
+    warnings.formatwarning = lambda message, *_args, **_kwargs: f"warning: {message}\n"
+    try:
+        from .app import app
 
-    app(prog_name="rotorsim")
+        app(prog_name="rotorsim")
+    except KeyboardInterrupt as stop:  # while libraries were loaded
+        sys.stderr.write("interrupted: nothing was changed\n")
+        sys.exit(getattr(stop, "exit_code", 128 + signal.SIGINT))
+
+
+def _clean_up_when_terminated() -> None:
+    """Answer the signals that end a process by an exception; where they are ignored, not at all."""
+
+    def stop(number: int, _frame: FrameType | None) -> NoReturn:
+        signal.signal(number, signal.SIG_DFL)  # whoever asks twice is obeyed at once
+        raise Terminated
+
+    for name in ("SIGTERM", "SIGHUP"):
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
+            signal.signal(number, stop)

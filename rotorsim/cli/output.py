@@ -7,7 +7,8 @@ import os
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -59,14 +60,16 @@ class Output:
     def show(self, *parts: RenderableType) -> None:
         """Show results for people on stdout."""
         if not (self.json or self.quiet):
-            for part in parts:
-                self.people.print(part)
-                self.people.print()
+            with _on_stdout():
+                for part in parts:
+                    self.people.print(part)
+                    self.people.print()
 
     def document(self, value: Any) -> None:
         """Print results for programs: the one JSON document."""
         if self.json:
-            print(strict_json(value))
+            with _on_stdout():
+                print(strict_json(value))
 
     def note(self, text: str) -> None:
         """Say what goes on, on stderr."""
@@ -99,6 +102,17 @@ class Output:
         return Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
 
 
+@contextmanager
+def _on_stdout() -> Iterator[None]:
+    """Name standard output in what goes wrong with it, and throw away what is still to come."""
+    try:
+        yield
+        sys.stdout.flush()
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise type(error)(error.errno, error.strerror, "standard output") from None
+
+
 def guarded(command: Callable[..., int]) -> Callable[..., None]:
     """Make a command that returns its exit code safe to call: no traceback for what can go wrong.
 
@@ -114,13 +128,12 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
         output = Output(json=json_output, quiet=quiet)
         try:
             code = command(output, **options)
-            sys.stdout.flush()
         except Exception as error:
             code = _explain(error, output)
-        except KeyboardInterrupt:
+        except KeyboardInterrupt as stop:
             kept = "; ".join(output.kept) or "nothing was changed"
             output.errors.print(f"interrupted: {kept}")
-            code = INTERRUPTED
+            code = getattr(stop, "exit_code", INTERRUPTED)
         raise typer.Exit(code)
 
     signature = inspect.signature(command, eval_str=True)
@@ -140,9 +153,7 @@ def _explain(error: Exception, output: Output) -> int:
     if isinstance(error, typer.Exit):
         raise error
     if isinstance(error, BrokenPipeError):
-        # The reader of a pipe left (``| head``): nobody listens, and that is no error.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return DONE
+        return DONE  # the reader of a pipe left (``| head``): nobody listens, and that is no error
     if os.environ.get("ROTORSIM_DEBUG"):
         raise error
     details: dict[str, Any] = {"message": str(error)}

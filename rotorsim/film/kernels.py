@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-import numba
+from ..compiled import compiled
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -16,7 +16,4 @@ def kernel(function: Function) -> Function:
     Division follows numpy (no exception); sums may be reordered and fused, nothing else is relaxed,
     so that NaN and infinities still behave.
     """
-    compiled: Any = numba.njit(
-        cache=True, error_model="numpy", fastmath={"contract", "reassoc"}, nogil=True
-    )(function)
-    return compiled
+    return compiled(error_model="numpy", fastmath={"contract", "reassoc"}, nogil=True)(function)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import cmath
 import math
 
-import numba as nb
 import numpy as np
+
+from ..compiled import compiled
 
 _EPS = 2.220446049250313e-16
 _TRUST = 1e-11
@@ -15,7 +16,7 @@ _CHECK = 1e-10
 """Largest relative error of the roots' sum and product."""
 
 
-@nb.njit(cache=True, inline="always", error_model="numpy")
+@compiled(inline="always", error_model="numpy")
 def _largest_resolvent_root(c2: float, c1: float, c0: float) -> float:
     """Real root of y^3 + c2 y^2 + c1 y + c0 that is largest in magnitude, polished."""
     shift = c2 / 3.0
@@ -37,7 +38,7 @@ def _largest_resolvent_root(c2: float, c1: float, c0: float) -> float:
     return y
 
 
-@nb.njit(cache=True, inline="always", error_model="numpy")
+@compiled(inline="always", error_model="numpy")
 def _quadratic(p: complex, q: complex) -> tuple[complex, complex]:
     """Roots of s^2 + p s + q, the larger first, without cancellation."""
     half = 0.5 * p
@@ -48,7 +49,7 @@ def _quadratic(p: complex, q: complex) -> tuple[complex, complex]:
     return large, (q / large if large != 0.0 else 0.0 * large)
 
 
-@nb.njit(cache=True, inline="always", error_model="numpy")
+@compiled(inline="always", error_model="numpy")
 def _polish(
     x: float, y: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float]:
@@ -84,7 +85,7 @@ def _polish(
     return x, y, 1.0
 
 
-@nb.njit(cache=True, inline="always", error_model="numpy")
+@compiled(inline="always", error_model="numpy")
 def _conjugate_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float,
@@ -100,7 +101,7 @@ def _conjugate_factors(
     return max(x1, x2) if good and max(d1, d2) <= _TRUST else math.nan
 
 
-@nb.njit(cache=True, inline="always", error_model="numpy")
+@compiled(inline="always", error_model="numpy")
 def _pair(
     p: float, q: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float, float]:
@@ -117,7 +118,7 @@ def _pair(
     return max(x1, x2), x1 + x2, x1 * x2, max(d1, d2)
 
 
-@nb.njit(cache=True, inline="always", error_model="numpy")
+@compiled(inline="always", error_model="numpy")
 def _real_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float, linear: float,
@@ -138,7 +139,7 @@ def _real_factors(
     return max(x1, x2) if good and max(d1, d2) <= _TRUST else math.nan
 
 
-@nb.njit(cache=True, inline="always", error_model="numpy")
+@compiled(inline="always", error_model="numpy")
 def _largest_real_part(
     alpha: float, beta: float, n2: float, n1: float, n0: float, product: float, linear: float
 ) -> float:
@@ -176,7 +177,7 @@ def _largest_real_part(
     return _real_factors(alpha, beta, n2, n1, n0, t, l1, l0, product, linear)
 
 
-@nb.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def _fill_row(k: np.ndarray, c: np.ndarray, mass: np.ndarray, rate: np.ndarray) -> None:
     """Growth rates of one operating point, (4,) stiffness and damping, with every mass."""
     # The differences are formed before anything is scaled, so that nearly like modes stay exact.
@@ -210,7 +211,7 @@ def _fill_row(k: np.ndarray, c: np.ndarray, mass: np.ndarray, rate: np.ndarray) 
             )
 
 
-@nb.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def fill_rates(
     stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray, rate: np.ndarray
 ) -> None:
@@ -219,7 +220,7 @@ def fill_rates(
         _fill_row(stiffness[i], damping[i], mass, rate[i])
 
 
-@nb.njit(cache=True, error_model="numpy")
+@compiled(error_model="numpy")
 def fill_rates_pairwise(
     stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray, rate: np.ndarray
 ) -> None:

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from ..compiled import compiled
 from .short_bearing import short_bearing_impedance
 
 Array = NDArray[np.float64]
@@ -20,7 +20,7 @@ LINEAR, SHORT_BEARING, FORCE_MAP = 0, 1, 2
 """Force models the kernel knows."""
 
 
-@numba.njit(cache=True)
+@compiled()
 def linear_force(
     x: float, y: float, vx: float, vy: float, speed: float, numbers: Array, table: Array
 ) -> tuple[float, float]:
@@ -47,7 +47,7 @@ def linear_force(
     return fx, fy
 
 
-@numba.njit(cache=True)
+@compiled()
 def map_impedance(
     eccentricity_ratio: float, angle: float, numbers: Array, table: Array
 ) -> tuple[float, float]:
@@ -78,7 +78,7 @@ def map_impedance(
     return radial * scale, tangential * scale
 
 
-@numba.njit(cache=True)
+@compiled()
 def _cubic_weights(s: float) -> tuple[float, float, float, float]:
     r = 1.0 - s
     return (
@@ -89,7 +89,7 @@ def _cubic_weights(s: float) -> tuple[float, float, float, float]:
     )
 
 
-@numba.njit(cache=True)
+@compiled()
 def squeeze_force(
     kind: int,
     x: float,
@@ -124,7 +124,7 @@ def squeeze_force(
     return scale * (radial * nx - tangential * ny), scale * (radial * ny + tangential * nx)
 
 
-@numba.njit(cache=True)
+@compiled()
 def film_force(
     kind: int,
     x: float,
@@ -141,7 +141,7 @@ def film_force(
     return squeeze_force(kind, x, y, vx, vy, speed, numbers, table)
 
 
-@numba.njit(cache=True)
+@compiled()
 def film_force_series(kind: int, motion: Array, numbers: Array, table: Array) -> Array:
     """Film force (n, 2) [N] along motion (n, 5): x, y, vx, vy, speed."""
     out = np.empty((motion.shape[0], 2))
@@ -151,7 +151,7 @@ def film_force_series(kind: int, motion: Array, numbers: Array, table: Array) ->
     return out
 
 
-@numba.njit(cache=True)
+@compiled()
 def shaft(t: float, schedule: Array) -> tuple[float, float, float]:
     """Angle, speed and acceleration of the shaft; rows: time, speed, angle, acceleration."""
     i = schedule.shape[0] - 2
@@ -163,7 +163,7 @@ def shaft(t: float, schedule: Array) -> tuple[float, float, float]:
     return schedule[i, 2] + since * (w + 0.5 * a * since), w + a * since, a
 
 
-@numba.njit(cache=True)
+@compiled()
 def _add_loads(t: float, force: Array, shapes: Array, times: Array) -> None:
     for k in range(times.shape[0]):
         if times[k, 1] <= t < times[k, 2]:
@@ -177,7 +177,7 @@ def _add_loads(t: float, force: Array, shapes: Array, times: Array) -> None:
                 force[i] += shapes[k, 0, i] * c + shapes[k, 1, i] * s
 
 
-@numba.njit(cache=True)
+@compiled()
 def load_series(t: Array, shapes: Array, times: Array) -> Array:
     """Loads on every degree of freedom (n, 2k) [N] at times t (n,); see `loads.pack_loads`."""
     out = np.zeros((t.size, shapes.shape[2]))
@@ -186,7 +186,7 @@ def load_series(t: Array, shapes: Array, times: Array) -> Array:
     return out
 
 
-@numba.njit(cache=True)
+@compiled()
 def motion_rates(
     t: float,
     state: Array,
@@ -235,7 +235,7 @@ def motion_rates(
     return rates
 
 
-@numba.njit(cache=True)
+@compiled()
 def _add_control(
     state: Array,
     force: Array,
@@ -261,7 +261,7 @@ def _add_control(
             force[i - extra] += total
 
 
-@numba.njit(cache=True)
+@compiled()
 def rates(
     t: float,
     state: Array,

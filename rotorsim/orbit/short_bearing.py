@@ -14,10 +14,10 @@ from __future__ import annotations
 
 import math
 
-import numba
+from ..compiled import compiled
 
 
-@numba.njit(cache=True)
+@compiled()
 def squeeze_integrals(eccentricity_ratio: float, angle: float) -> tuple[float, float]:
     """Integrals of cos(t - a) (cos t, sin t)/(1 - eps cos t)^3 over a - pi/2 to a + pi/2.
 
@@ -48,7 +48,7 @@ def squeeze_integrals(eccentricity_ratio: float, angle: float) -> tuple[float, f
     return ca * cc + sa * cs, ca * cs + sa * ss
 
 
-@numba.njit(cache=True)
+@compiled()
 def short_bearing_impedance(
     eccentricity_ratio: float, angle: float, slenderness: float
 ) -> tuple[float, float]:

@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import threading
+import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Future, ProcessPoolExecutor, wait
@@ -145,6 +146,8 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 def _start_worker(leash: Connection) -> None:
     # The parent decides what an interruption means; the worker would only add a traceback.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Said by the parent already.
+    warnings.filterwarnings("ignore", message="compiled code cannot be kept")
     threading.Thread(target=_end_with_parent, args=(leash,), daemon=True).start()
 
 

@@ -6,6 +6,7 @@ import json
 import os
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -273,3 +274,92 @@ def test_killing_a_sweep_twenty_times_loses_no_finished_point(tmp_path):
     assert said["kills"] == 20
     assert said["told"] >= 10  # the kills met a sweep at work
     assert said["same"]
+
+
+QUICK = TINY.split("[rotor]")[0]
+"""Two points of an isothermal film."""
+
+
+def started(folder: Path, *words: str, **options) -> subprocess.Popen[str]:
+    (folder / "quick.toml").write_text(QUICK, encoding="utf-8")
+    return subprocess.Popen(
+        [sys.executable, "-m", "rotorsim", *words], cwd=folder, text=True,
+        stdout=options.pop("stdout", subprocess.PIPE), stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(ROOT)}, **options,
+    )  # fmt: skip
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux")
+@pytest.mark.parametrize("words", [["check", "quick.toml", "--json"], ["check", "quick.toml"]])
+def test_a_full_standard_output_is_said(words, tmp_path):
+    with Path("/dev/full").open("w") as full:
+        process = started(tmp_path, *words, stdout=full)
+        _, said = process.communicate(timeout=60)
+    assert process.returncode == 2
+    assert said == "error: standard output: No space left on device\n"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
+@pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
+def test_a_process_that_is_asked_to_end_leaves_no_temporary_file(name, code, tmp_path):
+    """Asked while a file is written: the writing waits for it."""
+    (tmp_path / "slow.py").write_text(
+        "import os, sys, time, rotorsim.atomic as atomic\n"
+        "def flush(path):\n"
+        "    print('writing', flush=True)\n"
+        "    time.sleep(30)\n"
+        "atomic._flush_to_disk = flush\n"
+        "sys.argv = ['rotorsim', 'new', 'x']\n"
+        "from rotorsim.cli import main\n"
+        "main()\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "slow.py"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
+    assert process.stdout is not None
+    assert process.stdout.readline() == "writing\n"
+    process.send_signal(getattr(signal, name))
+    _, said = process.communicate(timeout=20)
+    assert (process.returncode, said) == (code, "interrupted: nothing was changed\n")
+    assert sorted(os.listdir(tmp_path)) == ["slow.py"]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="POSIX")
+@pytest.mark.parametrize("suffix", ["toml", "nc", "csv", "json", "rrd", "txt"])
+def test_pipes_and_long_names_are_refused_at_once(suffix, nonsense, tmp_path):
+    os.mkfifo(tmp_path / f"pipe.{suffix}")
+    commands = {
+        "toml": ["run", "check", "solve", "table", "orbit", "report", "stability", "control"],
+        "rrd": ["view"],
+    }.get(suffix, ["stability"])
+    for name in (f"pipe.{suffix}", "n" * 300 + f".{suffix}"):
+        for command in commands:
+            done = nonsense(command, name)
+            assert done.returncode == 2, (command, done.stderr)
+            assert done.stderr.startswith(f"error: {name}: ")
+        done = nonsense("export", name, "--to", "csv")
+        assert done.returncode == 2
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX")
+def test_a_file_size_limit_ends_with_a_message_and_the_old_table(good_table, tmp_path):
+    shutil.copy(good_table, tmp_path / "good.nc")
+    for form, name in (("nc", "out/good.nc"), ("mat", "out/good.mat")):
+        limited = (
+            "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))\n"
+            "from rotorsim.cli import main\n"
+            f"sys.argv = ['rotorsim', 'export', 'good.nc', '--to', '{form}', '-o', 'out']\n"
+            "main()"
+        )
+        (tmp_path / "out").mkdir(exist_ok=True)
+        (tmp_path / name).write_text("old")
+        done = subprocess.run(
+            [sys.executable, "-c", limited], cwd=tmp_path, capture_output=True, text=True,
+            env={**os.environ, "PYTHONPATH": str(ROOT)}, timeout=60,
+        )  # fmt: skip
+        assert done.returncode == 2, done.stderr
+        assert done.stderr.startswith(f"error: {name}: ")
+        assert "File too large" in done.stderr
+        assert (tmp_path / name).read_text() == "old"
+    assert sorted(os.listdir(tmp_path / "out")) == ["good.mat", "good.nc"]

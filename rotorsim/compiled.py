@@ -1,0 +1,169 @@
+"""Compiled functions and their cache on disk, which follows the sources.
+
+Numba's own cache asks whether the file of a function has changed; what the function calls, and the
+constants that are compiled into it, may stand in other files. Here machine code belongs to the
+function's byte code, that of all compiled functions that it calls, and the constants of either.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import CodeType, FunctionType
+from typing import Any, TypeVar
+
+import numba
+import numpy as np
+from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_PLAIN = (bool, int, float, complex, str, bytes, type(None), np.generic)
+_DIGEST = hashlib.sha256().digest_size
+_told = False
+
+
+def compiled(**options: Any) -> Callable[[Function], Function]:
+    """Decorate a function: compile it on first use and keep the machine code on disk.
+
+    Parameters
+    ----------
+    **options
+        Those of `numba.njit` but ``cache``.
+
+    Notes
+    -----
+    Where no folder can be written to, the function is compiled in every process; that is said once.
+    A damaged file of the cache counts as missing.
+    """
+
+    def decorate(function: Function) -> Function:
+        dispatcher: Any = numba.njit(**options)(function)
+        try:
+            dispatcher._cache = _SourceCache(dispatcher)
+        except RuntimeError:  # Numba's word for "no folder"
+            dispatcher._cache = NullCache()
+            _tell_once()
+        return dispatcher
+
+    return decorate
+
+
+class _CheckedFile(IndexDataCacheFile):
+    """Numba's files with a checksum after the pickled data, which unpickling does not look at."""
+
+    def _dump(self, obj: Any) -> bytes:
+        data = super()._dump(obj)
+        return data + hashlib.sha256(data).digest()
+
+    def _load_data(self, name: str) -> Any:
+        data = Path(self._data_path(name)).read_bytes()
+        if hashlib.sha256(data[:-_DIGEST]).digest() != data[-_DIGEST:]:
+            return None  # damaged machine code would end the process
+        return pickle.loads(data)
+
+
+class _SourceCache(FunctionCache):
+    """Numba's cache, valid for `fingerprint` of a function; no fault of a disk is passed on."""
+
+    def __init__(self, dispatcher: Any) -> None:
+        super().__init__(dispatcher.py_func)
+        self._dispatcher = dispatcher
+        self._cache_file = _CheckedFile(
+            cache_path=self._cache_path, filename_base=self._impl.filename_base, source_stamp=None
+        )
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the stored machine code; None where there is none, or a damaged one."""
+        self._stamp()
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # unpickling what is damaged may raise anything
+            return None
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Store machine code, if the disk takes it."""
+        self._stamp()
+        try:
+            super().save_overload(sig, data)
+        except OSError:
+            _tell_once()
+
+    def _stamp(self) -> None:
+        # Late: a function may be decorated before those that it calls.
+        self._cache_file._source_stamp = fingerprint(self._dispatcher)
+
+
+def _tell_once() -> None:
+    global _told
+    if not _told:
+        _told = True
+        warnings.warn(
+            "compiled code cannot be kept here and is made anew each time, which takes a minute; "
+            "name a folder for it in the environment: NUMBA_CACHE_DIR",
+            RuntimeWarning, stacklevel=3,
+        )  # fmt: skip
+
+
+def fingerprint(function: Callable[..., Any]) -> str:
+    """SHA-256 of everything of this package that is compiled into a function.
+
+    Examples
+    --------
+    >>> def double(x): return 2 * x
+    >>> def twice(x): return 2 * x
+    >>> def triple(x): return 3 * x
+    >>> fingerprint(double) == fingerprint(twice) != fingerprint(triple)
+    True
+    """
+    digest = hashlib.sha256()
+    for part in _parts(function, set()):
+        digest.update(part)
+        digest.update(b"\0")
+    return digest.hexdigest()
+
+
+def _parts(function: Any, seen: set[int]) -> Iterator[bytes]:
+    """Byte code, options and constants of a function and of the functions that it calls."""
+    yield from _value(getattr(function, "targetoptions", None), seen)
+    function = getattr(function, "py_func", function)
+    if not isinstance(function, FunctionType) or id(function) in seen:
+        return
+    seen.add(id(function))
+    for code in _codes(function.__code__):
+        yield code.co_code
+        yield from _value(code.co_varnames, seen)
+        yield from _value(tuple(c for c in code.co_consts if not isinstance(c, CodeType)), seen)
+        for name in code.co_names:
+            yield name.encode()
+            yield from _value(function.__globals__.get(name), seen)
+    for cell in function.__closure__ or ():
+        yield from _value(cell.cell_contents, seen)
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _codes(constant)
+
+
+def _value(value: Any, seen: set[int]) -> Iterator[bytes]:
+    """What a constant or a global name stands for, as far as it is compiled into a function."""
+    if isinstance(value, np.ndarray):
+        yield f"{value.dtype}{value.shape}".encode() + value.tobytes()
+    elif isinstance(value, _PLAIN):
+        yield repr(value).encode()
+    elif isinstance(value, tuple | list):
+        for entry in value:
+            yield from _value(entry, seen)
+    elif isinstance(value, set | frozenset):
+        yield repr(sorted(value, key=repr)).encode()
+    elif isinstance(value, dict):
+        for key in sorted(value, key=repr):
+            yield from _value((key, value[key]), seen)
+    elif hasattr(value, "py_func"):
+        yield from _parts(value, seen)

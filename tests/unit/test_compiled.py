@@ -1,0 +1,83 @@
+"""Machine code on disk belongs to the sources that it was made from."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CALLED = (
+    "from rotorsim.compiled import compiled\nSCALE = 2.0\n@compiled()\ndef called(x): return {}\n"
+)
+CALLS = (
+    "from called import SCALE, called\nfrom rotorsim.compiled import compiled\n"
+    "@compiled({})\ndef calls(x): return called(x) * SCALE\n"
+)
+RUN = (
+    "from calls import calls\nprint(calls(3.0), len(calls.stats.cache_hits), "
+    "len(calls.stats.cache_misses))"
+)
+
+
+def run(folder: Path, code: str = RUN, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        env={**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{ROOT}", **environment},
+        capture_output=True, text=True, check=True, cwd=folder,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def sources(tmp_path: Path) -> Path:
+    (tmp_path / "called.py").write_text(CALLED.format("x + 1.0"))
+    (tmp_path / "calls.py").write_text(CALLS.format(""))
+    return tmp_path
+
+
+def test_the_cache_follows_what_is_called_and_its_constants(sources: Path):
+    assert run(sources).stdout.split() == ["8.0", "0", "1"]
+    assert run(sources, PYTHONHASHSEED="5").stdout.split() == ["8.0", "1", "0"]
+    times = os.stat(sources / "called.py")
+    for text, value in (
+        (CALLED.format("x - 1.0"), "4.0"),
+        (CALLED.format("x - 1.0").replace("2.0", "5.0"), "10.0"),
+    ):
+        # The same size and time: only the contents tell.
+        (sources / "called.py").write_text(text)
+        os.utime(sources / "called.py", ns=(times.st_atime_ns, times.st_mtime_ns))
+        for entry in (sources / "__pycache__").glob("called.*.pyc"):
+            entry.unlink()  # Python's own cache looks at time and size
+        assert run(sources).stdout.split() == [value, "0", "1"]
+    assert run(sources).stdout.split() == ["10.0", "1", "0"]
+
+
+def test_the_cache_follows_the_options(sources: Path):
+    run(sources)
+    (sources / "calls.py").write_text(CALLS.format("fastmath=True"))
+    assert run(sources).stdout.split() == ["8.0", "0", "1"]
+
+
+def test_a_damaged_cache_counts_as_missing(sources: Path):
+    run(sources)
+    for entry in (sources / "__pycache__").glob("*.nb?"):
+        data = bytearray(entry.read_bytes())
+        data[len(data) // 2] ^= 4
+        entry.write_bytes(data)
+    assert run(sources).stdout.split() == ["8.0", "0", "1"]
+
+
+def test_without_a_folder_code_is_compiled_anew_and_that_is_said_once(sources: Path):
+    """Files where folders should be stand for folders that nobody may write to."""
+    (sources / "nowhere").touch()
+    environment = {"NUMBA_CACHE_DIR": "", "HOME": str(sources / "nowhere"),
+                   "XDG_CACHE_HOME": str(sources / "nowhere")}  # fmt: skip
+    code = "import sys; sys.dont_write_bytecode = True\n" + RUN
+    (sources / "__pycache__").touch()
+    for _ in range(2):
+        done = run(sources, code, **environment)
+        assert done.stdout.split() == ["8.0", "0", "1"]
+        assert done.stderr.count("compiled code cannot be kept here") == 1
