@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,10 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..file_kinds import FileKind, kind_of, sentence
 from ..rotor import Rotor
+from .arrays import read_arrays
 
 _OWN_KINDS = (None, FileKind.NUMPY, FileKind.MATLAB)
+_MOST_NODES = 1e6
 _KNOWN = ("M", "D", "C", "G", "K", "H", "bearing_nodes", "dofs_per_node")
 _KNOWN_WORDS = "M, D or C (damping), G, K, H (circulatory), bearing_nodes, dofs_per_node"
 
@@ -43,12 +44,12 @@ def load_rotor(
         The file cannot be read, or its matrices do not make a rotor.
     """
     source = Path(path)
-    data = dict(_read(source))
+    data = _read(source)
     _check_names(data, source, bearing_nodes is not None)
     if bearing_nodes is not None:
         data["bearing_nodes"] = np.asarray(bearing_nodes)
     if dofs_per_node is not None:
-        data["dofs_per_node"] = dofs_per_node
+        data["dofs_per_node"] = np.asarray(dofs_per_node)
     if "C" in data:
         data["D"] = data.pop("C")
     try:
@@ -59,7 +60,7 @@ def load_rotor(
         raise InputError(f"arrays must be real numbers ({error})", source=source) from error
     for key, values in (("bearing_nodes", nodes), ("dofs_per_node", np.array([per_node]))):
         for position, value in enumerate(values):
-            if value != np.round(value):
+            if not abs(value) < _MOST_NODES or value != np.round(value):
                 raise InputError(
                     "must be whole numbers", source=source, key=f"{key}, column {position}",
                     value=float(value),
@@ -92,37 +93,14 @@ def _check_names(data: Mapping[str, Any], source: Path, nodes_given: bool) -> No
         raise InputError(f"arrays are missing: {', '.join(missing)}; {held}{hint}", source=source)
 
 
-def _matrix(value: Any) -> NDArray:
-    """Plain matrix of numbers, real or complex; MATLAB's sparse ones come as such."""
-    array = np.asarray(value.toarray() if hasattr(value, "toarray") else value)
-    return array if np.iscomplexobj(array) else array.astype(float)
+def _matrix(value: NDArray[Any]) -> NDArray[Any]:
+    """Matrix of real or complex numbers."""
+    return value if np.iscomplexobj(value) else value.astype(float)
 
 
-def _read(source: Path) -> Mapping[str, Any]:
-    if source.suffix not in (".npz", ".mat"):
+def _read(source: Path) -> dict[str, NDArray[Any]]:
+    if source.suffix.lower() not in (".npz", ".mat"):
         kind = kind_of(source)
         known = f"{sentence(kind)}; a rotor's file " if kind not in _OWN_KINDS else ""
         raise InputError(f"{known}must end in .npz or .mat", source=source)
-    try:
-        if source.suffix == ".npz":
-            # No pickles: a file from elsewhere must not run code.
-            with np.load(source, allow_pickle=False) as file:
-                return {name: file[name] for name in file.files}
-        from scipy.io import loadmat
-
-        with warnings.catch_warnings():
-            # Whether sparse matrices come as SciPy's older kind or its newer one: both will do.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            found = loadmat(source)
-        return {name: value for name, value in found.items() if not name.startswith("__")}
-    except OSError as error:
-        reason = error.strerror or "it is damaged, or no such file"
-        raise InputError(f"cannot be read: {reason}", source=source) from error
-    except NotImplementedError as error:
-        raise InputError(
-            "cannot be read: save it in MATLAB with the option -v7", source=source
-        ) from error
-    except Exception as error:  # the readers raise a dozen kinds on damaged files
-        raise InputError(
-            f"cannot be read: no {source.suffix} file of plain arrays of numbers", source=source
-        ) from error
+    return read_arrays(source)

@@ -326,7 +326,7 @@ def test_a_process_that_is_asked_to_end_leaves_no_temporary_file(name, code, tmp
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="POSIX")
-@pytest.mark.parametrize("suffix", ["toml", "nc", "csv", "json", "rrd", "txt"])
+@pytest.mark.parametrize("suffix", ["toml", "nc", "csv", "json", "npz", "mat", "rrd", "txt"])
 def test_pipes_and_long_names_are_refused_at_once(suffix, nonsense, tmp_path):
     os.mkfifo(tmp_path / f"pipe.{suffix}")
     commands = {
@@ -338,6 +338,10 @@ def test_pipes_and_long_names_are_refused_at_once(suffix, nonsense, tmp_path):
             done = nonsense(command, name)
             assert done.returncode == 2, (command, done.stderr)
             assert done.stderr.startswith(f"error: {name}: ")
+        if suffix in ("npz", "mat"):
+            done = nonsense("stability", "good.nc", "--rotor", name)
+            assert done.returncode == 2
+            assert name in done.stderr
         done = nonsense("export", name, "--to", "csv")
         assert done.returncode == 2
 
