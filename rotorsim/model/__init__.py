@@ -8,6 +8,8 @@ from .bearing import Arc, Bearing, Groove
 from .case import Case
 from .lubricant import ExponentialViscosity, Lubricant, ViscosityLaw, WaltherViscosity
 from .operating import EccentricityTarget, LoadTarget, Target
+from .pads import Pad, PadInertia, pad_inertia
+from .pivots import LinePivot, Pivot, RigidPivot, SocketPivot, SpherePivot, SpringPivot
 from .settings import (
     BushModel,
     Cavitation,
@@ -34,15 +36,24 @@ __all__ = [
     "Groove",
     "Inception",
     "InletModel",
+    "LinePivot",
     "LoadTarget",
     "Lubricant",
     "MeshSize",
+    "Pad",
+    "PadInertia",
+    "Pivot",
+    "RigidPivot",
     "RupturedFriction",
     "ShaftModel",
+    "SocketPivot",
+    "SpherePivot",
+    "SpringPivot",
     "Target",
     "ThermalModel",
     "ThermalSettings",
     "ViscosityLaw",
     "ViscosityResponse",
     "WaltherViscosity",
+    "pad_inertia",
 ]

@@ -1,4 +1,4 @@
-"""Bearing geometry: a bore made of arcs, cut by axial grooves."""
+"""Bearing geometry: a bore made of arcs, cut by axial grooves, or of tilting pads."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
-
-FULL_TURN = 2.0 * math.pi
+from .pads import FULL_TURN, Pad, check_order, gaps
 
 
 def angle_between(theta: ArrayLike, other: float) -> NDArray[np.float64]:
@@ -133,6 +132,9 @@ class Bearing:
         d(e_x)/dy and d(e_y)/dy [rad], y axial from the mid-plane.
     roughness : float
         Combined surface roughness [m]; a film thinner than this is reported. 0: not checked.
+    pads : tuple of Pad
+        Tilting pads in place of a bore, in the direction of rotation. The openings between them are
+        the grooves: one before each pad, at ambient pressure unless `grooves` gives them.
     """
 
     journal_radius: float
@@ -143,8 +145,10 @@ class Bearing:
     bush_outer_radius: float | None = None
     tilt: tuple[float, float] = (0.0, 0.0)
     roughness: float = 0.0
+    pads: tuple[Pad, ...] = ()
 
     def __post_init__(self) -> None:
+        self._place_pads()
         for name in ("journal_radius", "length", "radial_clearance"):
             value = getattr(self, name)
             _require(
@@ -169,6 +173,30 @@ class Bearing:
             "bearing.roughness",
             self.roughness,
         )
+
+    def _place_pads(self) -> None:
+        if not self.pads:
+            return
+        _require(not self.arcs, "tilting pads stand in place of arcs", "bearing.arcs", self.arcs)
+        check_order(self.pads)
+        between = gaps(self.pads)
+        if not self.grooves:
+            grooves = tuple(Groove(middle, extent) for middle, extent in between)
+            object.__setattr__(self, "grooves", grooves)
+        fits = len(self.grooves) == len(between) and all(
+            abs(groove.center - middle) < 1e-9 and abs(groove.extent - extent) < 1e-9
+            for groove, (middle, extent) in zip(self.grooves, between, strict=True)
+        )
+        _require(
+            fits and all(self.spans_length(groove) for groove in self.grooves),
+            "with tilting pads the grooves are the openings before each pad, over the whole length",
+            "bearing.grooves",
+            len(self.grooves),
+        )
+
+    def clearance_of(self, pad: Pad) -> float:
+        """Machined clearance of a pad [m]."""
+        return self.radial_clearance if pad.clearance is None else pad.clearance
 
     @property
     def diameter(self) -> float:
@@ -198,6 +226,7 @@ class Bearing:
             self,
             grooves=tuple(replace(g, center=g.center + angle) for g in self.grooves),
             arcs=tuple(replace(a, start=a.start + angle, end=a.end + angle) for a in self.arcs),
+            pads=tuple(replace(p, pivot_angle=p.pivot_angle + angle) for p in self.pads),
             tilt=(
                 self.tilt[0] * cos - self.tilt[1] * sin,
                 self.tilt[0] * sin + self.tilt[1] * cos,

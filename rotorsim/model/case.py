@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from ..errors import InputError
 from .bearing import Bearing
 from .lubricant import Lubricant
-from .operating import Target
+from .operating import EccentricityTarget, Target
 from .settings import FilmSettings, ThermalSettings
 
 
@@ -29,3 +30,14 @@ class Case:
     film: FilmSettings
     thermal: ThermalSettings
     target: Target
+
+    def __post_init__(self) -> None:
+        target = self.target
+        if not isinstance(target, EccentricityTarget) or self.bearing.pads:
+            return
+        if not target.eccentricity_ratio < 1.0:
+            raise InputError(
+                "must lie between 0 and 1, both excluded",
+                key="operating.eccentricity_ratio",
+                value=target.eccentricity_ratio,
+            )

@@ -10,14 +10,17 @@ from ..errors import InputError
 
 @dataclass(frozen=True)
 class EccentricityTarget:
-    """The journal at a given eccentricity ratio; the load it carries is a result."""
+    """The journal at a given eccentricity ratio; the load it carries is a result.
+
+    Below 1 in a bore; between tilting pads it may be more.
+    """
 
     eccentricity_ratio: float
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.eccentricity_ratio < 1.0:
+        if not 0.0 < self.eccentricity_ratio < math.inf:
             raise InputError(
-                "must lie between 0 and 1, both excluded",
+                "must be above 0",
                 key="operating.eccentricity_ratio",
                 value=self.eccentricity_ratio,
             )
