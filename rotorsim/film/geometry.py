@@ -3,13 +3,15 @@
 The film thickness is h = h_0 + sum_q q s_q: what it is with every displacement zero (clearance,
 lobes, misalignment), plus each displacement q times its shape s_q(theta, y) = dh/dq. The journal's
 two translations have the shapes -cos(theta) and -sin(theta), its two rotations y sin(theta) and
--y cos(theta). The force that the film exerts along q is Q_q = int p s_q dA.
+-y cos(theta). On a pad with its pivot at theta_p, tilt has the shape -(R + t) sin(theta - theta_p),
+the pivot's displacement cos(theta - theta_p) and pitch y cos(theta - theta_p). The force that the
+film exerts along q is Q_q = int p s_q dA.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -115,23 +117,103 @@ class FilmGeometry:
         """Smallest film thickness [m] of the lands at `q`; not positive where the walls touch."""
         return self.thinnest(self.thickness(q))
 
+    def without(self, columns: Flags, q: Array) -> FilmGeometry:
+        """Return the geometry whose film in `columns` (n,) stays as it is at `q`, without force."""
+        rest, shapes = self.rest.copy(), self.displacements.shapes.copy()
+        rest[:, columns] = self.thickness(q)[:, columns]
+        shapes[:, :, columns] = 0.0
+        return replace(self, rest=rest, displacements=replace(self.displacements, shapes=shapes))
+
     def forces(self, load: Array) -> Array:
         """Generalised forces Q_q of the film, (q,), for the `load` p dA of each cell [N]."""
         return self.multiplicity * np.tensordot(self.displacements.shapes[:, CENTER], load, axes=2)
 
 
 def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
-    """Geometry of a fixed bearing's film, displaced by the journal's translations."""
-    inward = 1e-9 * np.diff(mesh.theta_faces)
-    inside = _angles(mesh) + np.stack([np.zeros_like(inward), inward, -inward])
-    bore = (bearing.radial_clearance + bore_offset(bearing, inside))[[0, 1, 2, 0, 0]]
-    rest = np.repeat(bore[:, :, None], mesh.shape[1], axis=2)
+    """Geometry of a bearing's film, displaced by the journal's translations and by its pads."""
+    if bearing.pads:
+        bore, displacements = _pads_at_rest(bearing, mesh), _journal_and_pads(bearing, mesh)
+    else:
+        inward = 1e-9 * np.diff(mesh.theta_faces)
+        inside = _angles(mesh) + np.stack([np.zeros_like(inward), inward, -inward])
+        bore = bearing.radial_clearance + bore_offset(bearing, inside)
+        displacements = translations(bearing, mesh)
+    rest = np.repeat(bore[[0, 1, 2, 0, 0]][:, :, None], mesh.shape[1], axis=2)
     if not bearing.is_symmetric:
         tilt = np.array([-bearing.tilt[1], bearing.tilt[0]])
         rest += np.tensordot(tilt, rotations(bearing, mesh).shapes, axes=1)
-    return FilmGeometry(
-        rest, translations(bearing, mesh), mesh.supply < 0, multiplicity=mesh.multiplicity
-    )
+    return FilmGeometry(rest, displacements, mesh.supply < 0, multiplicity=mesh.multiplicity)
+
+
+@dataclass(frozen=True)
+class PadUnknowns:
+    """Places of one pad's displacements among all; None where its pivot does not have them."""
+
+    tilt: int
+    pivot: int | None
+    pitch: int | None
+
+    @property
+    def places(self) -> list[int]:
+        """All of them."""
+        return [place for place in (self.tilt, self.pivot, self.pitch) if place is not None]
+
+
+def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, ...]]:
+    """Names of all displacements of a film between pads, and the places of each pad's.
+
+    A flexible pivot adds its radial displacement, positive outwards. A ball lets the pad pitch,
+    which a misaligned journal asks of it; aligned, pitch and the other displacements are apart.
+    """
+    names, places = list(TRANSLATIONS), []
+    for number, pad in enumerate(bearing.pads, start=1):
+        tilt = len(names)
+        names.append(f"tilt_{number}")
+        pivot = pitch = None
+        if not pad.pivot.is_rigid:
+            pivot = len(names)
+            names.append(f"pivot_{number}")
+        if pad.pivot.pitches and not bearing.is_symmetric:
+            pitch = len(names)
+            names.append(f"pitch_{number}")
+        places.append(PadUnknowns(tilt, pivot, pitch))
+    return tuple(names), tuple(places)
+
+
+def _pads_at_rest(bearing: Bearing, mesh: FilmMesh) -> Array:
+    """h [m] of untilted pads around a centred journal, (3, n): centres, west and east faces."""
+    theta = _angles(mesh)
+    h = np.full(theta.shape, bearing.radial_clearance)
+    for number, pad in enumerate(bearing.pads):
+        columns = mesh.region == number
+        clearance = bearing.clearance_of(pad)
+        angle = theta[:, columns] - pad.pivot_angle
+        h[:, columns] = clearance * (1.0 - pad.preload * np.cos(angle))
+    return h
+
+
+def _journal_and_pads(bearing: Bearing, mesh: FilmMesh) -> Displacements:
+    """Displacements of the journal, and tilt, pivot displacement and pitch of the pads."""
+    names, places = pad_unknowns(bearing)
+    journal = translations(bearing, mesh)
+    shapes = np.zeros((len(names), 5, *mesh.shape))
+    scales = np.full(len(names), bearing.radial_clearance)
+    shapes[:2] = journal.shapes
+    y = mesh.y
+    along = np.stack([y, y, y, mesh.y_faces[:-1], mesh.y_faces[1:]])[:, None, :]
+    for number, (pad, own) in enumerate(zip(bearing.pads, places, strict=True)):
+        columns = mesh.region == number
+        angle = _angles(mesh)[[0, 1, 2, 0, 0]][:, columns, None] - pad.pivot_angle
+        arm, clearance = bearing.journal_radius + pad.thickness, bearing.clearance_of(pad)
+        shapes[own.tilt][:, columns] = -arm * np.sin(angle)
+        scales[own.tilt] = clearance / arm
+        if own.pivot is not None:
+            shapes[own.pivot][:, columns] = np.cos(angle)
+            scales[own.pivot] = clearance
+        if own.pitch is not None:
+            shapes[own.pitch][:, columns] = along * np.cos(angle)
+            scales[own.pitch] = clearance / (0.5 * bearing.length)
+    return Displacements(names, shapes, scales)
 
 
 def translations(bearing: Bearing, mesh: FilmMesh) -> Displacements:

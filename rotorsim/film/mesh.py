@@ -101,8 +101,11 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
     """Mesh of `bearing` (in the film frame), graded for the journal at `position` [m]."""
     size = settings.mesh
     slots_at_max = bearing.is_plain and settings.inception is Inception.MAX_FILM
-    start, breaks = _breakpoints(bearing)
-    theta_faces = _theta_faces(bearing, position, start, breaks, size.circumferential)
+    if bearing.pads:
+        theta_faces = _pad_faces(bearing, size.circumferential)
+    else:
+        start, breaks = _breakpoints(bearing)
+        theta_faces = _theta_faces(bearing, position, start, breaks, size.circumferential)
     half = bearing.is_symmetric
     y_faces = (
         np.linspace(0.0, bearing.length / 2.0, size.axial // 2 + 1)
@@ -110,7 +113,7 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
         else np.linspace(-bearing.length / 2.0, bearing.length / 2.0, size.axial + 1)
     )
     supply, y_faces = _supply_cells(bearing, theta_faces, y_faces)
-    slot = np.zeros(size.circumferential, dtype=bool)
+    slot = np.zeros(theta_faces.size - 1, dtype=bool)
     slot[0] = slots_at_max
     return FilmMesh(
         theta_faces=theta_faces,
@@ -178,6 +181,26 @@ def _theta_faces(
         theta = np.interp(inner, cumulative, fine)
         theta[-1] = breaks[k + 1]
         faces.append(theta)
+    return np.concatenate(faces)
+
+
+def _pad_faces(bearing: Bearing, count: int) -> Array:
+    """Faces of `count` cells over the pads, an even number each, and of two in every gap."""
+    pads = bearing.pads
+    if count < 4 * len(pads):
+        raise InputError(
+            f"too coarse for {len(pads)} pads: at least {4 * len(pads)}",
+            key="film.mesh.circumferential",
+            value=count,
+        )
+    counts = _share_out(np.array([pad.arc for pad in pads]), count // 2)
+    turn = 2.0 * math.pi
+    faces = [np.array([pads[0].leading_edge])]
+    for number, (pad, pairs) in enumerate(zip(pads, counts, strict=True)):
+        on_pad = np.linspace(pad.leading_edge, pad.trailing_edge, 2 * pairs + 1)
+        last = number + 1 == len(pads)
+        following = pads[0].leading_edge + turn if last else pads[number + 1].leading_edge
+        faces += [on_pad[1:], [0.5 * (pad.trailing_edge + following), following]]
     return np.concatenate(faces)
 
 

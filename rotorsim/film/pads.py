@@ -1,0 +1,527 @@
+"""Equilibrium of journal and tilting pads.
+
+Seen from its pivot, a pad is an arc of a plain bore around a journal at the eccentricity
+
+    E_n = e_n + m c_p - xi,    E_t = e_t + (R + t) delta
+
+(along the pivot's radius and across it), h = c_p - E_n cos(theta - theta_p) - E_t sin(theta -
+theta_p). Its tilt is free, so E_t settles where the film's moment about the pivot vanishes. A pad
+tilted so far back that its film diverges everywhere carries nothing and fulfils that trivially; the
+root that carries load lies above it, and there the moment falls with the tilt. With E_n > 0 it is
+bracketed: at E_t = 0 all pressure lies ahead of the pivot, where the trailing edge touches, behind
+it. With E_n <= 0 only a pivot behind the middle has one, if any; a pad without one is unloaded.
+
+The load of each pad is then a rising function of E_n alone, so that Newton's method for the journal,
+kept off the pads, finds the one equilibrium; journal, tilts, pivots and pitches move together, with
+the film's own stiffness for the Jacobian.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import Bearing, EccentricityTarget, Pad, Target
+from .banded import NoFilmError
+from .geometry import CENTER, FilmGeometry, PadUnknowns, pad_unknowns
+from .layers import LayerIntegrals
+from .linearization import stiffness_matrix
+from .mesh import FilmMesh
+from .problem import FilmProblem, FilmState, film_state
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+FILM_KEPT = 0.35
+"""Part of each pad's thinnest film that a step must leave."""
+LARGEST_STEP = 0.3
+"""Of E_n, relative to the clearance."""
+THINNEST = 1e-4
+"""Film thickness relative to the clearance at which the search gives up."""
+LEAST_ECCENTRICITY = 1e-8
+"""E_n relative to the clearance above which a pad carries load wherever its pivot stands."""
+SLACK = 0.05
+"""Stiffness of the journal over load per clearance, added while the forces are far off."""
+SETTLED = 0.005
+"""Distance of the centre of pressure from the pivot, in pad angles, at which a tilt is known
+roughly."""
+SAMPLES = 16
+"""Tilts at which the root of a pad with E_n <= 0 is looked for."""
+
+
+@dataclass(frozen=True)
+class PadFrame:
+    """One pad of a film: its cells, its unknowns, and how far it may tilt.
+
+    Attributes
+    ----------
+    pad : Pad
+    clearance : float
+        Machined [m].
+    arm : float
+        R + t [m].
+    columns : (n,) bool array
+    unknowns : PadUnknowns
+    sine : (5, columns, 1) array
+        sin(theta - theta_p) at the points of `FilmGeometry.rest`.
+    """
+
+    pad: Pad
+    clearance: float
+    arm: float
+    columns: Flags
+    unknowns: PadUnknowns
+    sine: Array
+
+    def eccentricity(self, q: Array) -> tuple[float, float]:
+        """E_n and E_t at the mid-plane [m]."""
+        cos, sin = math.cos(self.pad.pivot_angle), math.sin(self.pad.pivot_angle)
+        along = q[0] * cos + q[1] * sin + self.pad.preload * self.clearance
+        if self.unknowns.pivot is not None:
+            along -= q[self.unknowns.pivot]
+        across = -q[0] * sin + q[1] * cos + self.arm * q[self.unknowns.tilt]
+        return float(along), float(across)
+
+    def level_tilt(self, q: Array) -> float:
+        """Tilt [rad] at which E_t = 0."""
+        return float(q[self.unknowns.tilt] - self.eccentricity(q)[1] / self.arm)
+
+    def tilt_limits(self, geometry: FilmGeometry, q: Array) -> tuple[float, float]:
+        """Tilts [rad] at which leading and trailing edge would touch the journal at `q`."""
+        h = geometry.thickness(q)[:, self.columns]
+        with np.errstate(divide="ignore"):
+            room = h / (self.arm * self.sine)
+        ahead = np.where(self.sine < 0.0, room, -np.inf)
+        behind = np.where(self.sine > 0.0, room, np.inf)
+        tilt = float(q[self.unknowns.tilt])
+        return tilt + float(ahead.max()), tilt + float(behind.min())
+
+    def idle_tilt(self, geometry: FilmGeometry, q: Array) -> float:
+        """Tilt [rad] at which the film diverges all over the pad, as far as there is room."""
+        along = self.eccentricity(q)[0]
+        edge = (1.0 if along <= 0.0 else -1.0) * self._half_beyond(along)
+        low, high = self.tilt_limits(geometry, q)
+        wanted = self.level_tilt(q) + along * math.tan(edge) / self.arm
+        return min(max(wanted, low + 0.05 * (high - low)), high - 0.05 * (high - low))
+
+    def _half_beyond(self, along: float) -> float:
+        """Angle from the pivot to the edge where the film would first converge [rad]."""
+        pad = self.pad
+        angle = (1.0 - pad.offset if along <= 0.0 else pad.offset) * pad.arc
+        return min(angle, 0.45 * math.pi)
+
+
+def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
+    """Frames of all pads of a film."""
+    _, places = pad_unknowns(bearing)
+    angles = np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])[[0, 1, 2, 0, 0]]
+    frames = []
+    for number, (pad, unknowns) in enumerate(zip(bearing.pads, places, strict=True)):
+        columns = mesh.region == number
+        sine = np.sin(angles[:, columns] - pad.pivot_angle)[:, :, None]
+        arm = bearing.journal_radius + pad.thickness
+        frames.append(
+            PadFrame(pad, bearing.clearance_of(pad), arm, columns, unknowns, sine)
+        )
+    return tuple(frames)
+
+
+class PadSearch:
+    """Newton's method for journal and pads; a `Move` of `solve_thermal_film`.
+
+    Parameters
+    ----------
+    problem : FilmProblem
+        With all its pads.
+    target : Target
+        Load along x, or eccentricity ratio.
+    """
+
+    def __init__(self, problem: FilmProblem, target: Target) -> None:
+        self.whole = problem
+        self.problem = problem
+        """With the unloaded pads' films standing still."""
+        self.target = target
+        self.unreachable = False
+        self.unloaded: frozenset[int] = frozenset()
+        self._returned: frozenset[int] = frozenset()
+        """Pads that were unloaded before; from zero their load rises infinitely steep."""
+
+    @cached_property
+    def frames(self) -> tuple[PadFrame, ...]:
+        """Frames of the pads."""
+        return pad_frames(self.whole.bearing, self.whole.mesh)
+
+    @cached_property
+    def _weights(self) -> Array:
+        """What turns a generalised force into one on the journal [1 or 1/m]."""
+        displacements = self.whole.geometry.displacements
+        return displacements.scales / self.whole.bearing.radial_clearance
+
+    def first_guess(self) -> Array:
+        """Displacements to begin with: the journal half-way to the pads, along the load.
+
+        Raises
+        ------
+        NoFilmError
+            At the given eccentricity the journal touches a pad wherever it stands.
+        """
+        q = np.zeros(len(self._weights))
+        if isinstance(self.target, EccentricityTarget):
+            size = self.target.eccentricity_ratio * self.whole.bearing.radial_clearance
+            for angle in math.pi / 36.0 * np.array(sorted(range(-36, 37), key=abs)):
+                if size < self.reach(float(angle)):
+                    q[0], q[1] = size * math.cos(angle), size * math.sin(angle)
+                    return self._with_room(q)
+            raise NoFilmError("the journal touches a pad wherever it stands at this eccentricity")
+        q[0] = 0.5 * min(self.reach(0.0), self.whole.bearing.radial_clearance)
+        return self._with_room(q)
+
+    def reach(self, angle: float) -> float:
+        """Distance from the centre at which the journal, moved along `angle`, touches a pad [m].
+
+        Pads on flexible pivots give way and do not count.
+        """
+        distances = [math.inf]
+        for frame in self.frames:
+            towards = math.cos(angle - frame.pad.pivot_angle)
+            if towards > 1e-9 and frame.unknowns.pivot is None:
+                distances.append((1.0 - frame.pad.preload) * frame.clearance / towards)
+        return min(distances)
+
+    def _with_room(self, q: Array) -> Array:
+        """Level the pads, and push flexible pivots back where the journal would touch."""
+        for frame in self.frames:
+            if frame.unknowns.pivot is not None:
+                along = frame.eccentricity(q)[0] + q[frame.unknowns.pivot]
+                q[frame.unknowns.pivot] = max(0.0, along - 0.9 * frame.clearance)
+            q[frame.unknowns.tilt] = frame.level_tilt(q)
+        return q
+
+    # --- what Newton's method needs -------------------------------------------------------------
+
+    def missing(self, state: FilmState) -> Array:
+        """Generalised forces that are not in balance, (q,)."""
+        missing = state.force.copy()
+        if not isinstance(self.target, EccentricityTarget):
+            missing[0] += self.target.load
+        for number, frame in enumerate(self.frames):
+            if number in self.unloaded:
+                missing[frame.unknowns.places] = 0.0
+            elif frame.unknowns.pivot is not None:
+                place = frame.unknowns.pivot
+                wanted, stiffness = self._pivot_under(state, frame)
+                missing[place] = stiffness * (wanted - float(state.displacement[place]))
+        return missing
+
+    def _pivot_under(self, state: FilmState, frame: PadFrame) -> tuple[float, float]:
+        """Deflection of a pad's pivot under the film's force, and the pivot's stiffness there.
+
+        Newton's method takes the pivot's law at the film's force rather than at the deflection:
+        a contact without load has no stiffness.
+        """
+        assert frame.unknowns.pivot is not None
+        force = max(float(state.force[frame.unknowns.pivot]), 0.0)
+        deflection = frame.pad.pivot.deflection(force)
+        return deflection, frame.pad.pivot.stiffness_at(deflection)
+
+    def stiffness(self, state: FilmState) -> Array:
+        """Film and pivots, (q, q); an unloaded pad's unknowns stand alone."""
+        stiffness = stiffness_matrix(state)
+        for number, frame in enumerate(self.frames):
+            if number in self.unloaded:
+                for place in frame.unknowns.places:
+                    stiffness[place, place] = 1.0
+            elif frame.unknowns.pivot is not None:
+                place = frame.unknowns.pivot
+                stiffness[place, place] += self._pivot_under(state, frame)[1]
+        return stiffness
+
+    def __call__(self, state: FilmState) -> tuple[Array, float]:
+        """Newton's next displacements, and how far the forces are off, relative to the load."""
+        q, weights = state.displacement, self._weights
+        missing = self.missing(state) * weights
+        stiffness = self.stiffness(state) * weights[:, None] * weights[None, :]
+        for number, frame in enumerate(self.frames):
+            if number not in self.unloaded and not self._carries(state, frame):
+                # It has lost its film: leave it to `allowed` to bring it back.
+                for place in frame.unknowns.places:
+                    stiffness[place, :] = stiffness[:, place] = 0.0
+                    stiffness[place, place] = 1.0
+        if isinstance(self.target, EccentricityTarget):
+            step, off = self._turn(q, missing, stiffness)
+        else:
+            off = float(np.linalg.norm(missing)) / self.target.load
+            # A journal on one pad alone has no stiffness across: let it slide, not leap.
+            slack = SLACK * min(off, 1.0) * self.target.load / self.whole.bearing.radial_clearance
+            stiffness[[0, 1], [0, 1]] += slack
+            step = _solve(stiffness, missing)
+        following = self.allowed(q, q + weights * step)
+        thin = min(
+            self.problem.geometry.thickness(q)[:, frame.columns].min() / frame.clearance
+            for frame in self.frames
+        )
+        self.unreachable = bool(thin < 2.0 * THINNEST and off > 1e-3)
+        return following, off
+
+    def _turn(self, q: Array, missing: Array, stiffness: Array) -> tuple[Array, float]:
+        """Newton's step that keeps the journal at its distance from the centre."""
+        size = float(np.hypot(q[0], q[1]))
+        across = np.array([-q[1], q[0]]) / size
+        load = max(float(-missing[0]), 1e-30)
+        off = float(np.linalg.norm(missing[1:])) / float(np.hypot(missing[0], missing[1]) + 1e-300)
+        if missing[0] >= 0.0:
+            off = max(off, 1.0)
+        reduced = np.column_stack([stiffness[1:, :2] @ across, stiffness[1:, 2:]])
+        slack = SLACK * min(off, 1.0) * float(np.hypot(missing[0], missing[1]))
+        reduced[0, 0] += slack / self.whole.bearing.radial_clearance * across[1]
+        if abs(missing[0]) < 1e-30 and not missing[1:].any():
+            return np.zeros_like(q), 1.0
+        solved = _solve(reduced, missing[1:])
+        angle = max(-0.3, min(0.3, float(solved[0]) / size))
+        if not load > 0.0 or not math.isfinite(angle):
+            angle = 0.0
+        turned = math.atan2(q[1], q[0]) + angle
+        step = np.concatenate([size * np.array([math.cos(turned), math.sin(turned)]), solved[1:]])
+        step[:2] -= q[:2]
+        return step, off
+
+    def _carries(self, state: FilmState, frame: PadFrame) -> bool:
+        return bool(state.solution.pressure[frame.columns].max() > 0.0)
+
+    def allowed(self, old: Array, new: Array, /) -> Array:
+        """Shorten a step that goes too far, and keep each pad above its trivial root."""
+        geometry, step = self.problem.geometry, new - old
+        clearance = self.whole.bearing.radial_clearance
+        loaded = [f for k, f in enumerate(self.frames) if k not in self.unloaded]
+        scale = 1.0
+        for number, frame in enumerate(self.frames):
+            before, after = frame.eccentricity(old)[0], frame.eccentricity(new)[0]
+            room = LARGEST_STEP * frame.clearance
+            if number in self.unloaded:
+                room = 0.5 * (frame.clearance - before)
+                after = max(after, before)
+            elif number in self._returned and 0.0 < before and after < before:
+                room = min(room, 0.75 * before)
+            scale = min(scale, max(room, 0.0) / max(abs(after - before), 1e-300))
+        film = geometry.thickness(old)
+        floors = [
+            max(FILM_KEPT * float(film[:, frame.columns].min()), THINNEST * frame.clearance)
+            for frame in loaded
+        ]
+        result = old
+        while scale > 1e-6:
+            result = self._above_trivial(old, old + scale * step, loaded)
+            h = geometry.thickness(result)
+            if all(
+                float(h[:, frame.columns].min()) >= floor
+                for frame, floor in zip(loaded, floors, strict=True)
+            ):
+                break
+            scale *= 0.6
+        else:
+            return old
+        if isinstance(self.target, EccentricityTarget) and scale < 1.0:
+            size = self.target.eccentricity_ratio * clearance
+            result[:2] *= size / float(np.hypot(result[0], result[1]))
+        return result
+
+    def _above_trivial(self, old: Array, new: Array, loaded: list[PadFrame]) -> Array:
+        """Keep E_t of every pad with E_n > 0 above zero, where its film carries."""
+        new = new.copy()
+        for frame in loaded:
+            along, across = frame.eccentricity(new)
+            if along > 0.0 and across <= 0.0 and not self._fed:
+                kept = max(0.3 * frame.eccentricity(old)[1], 0.02 * along)
+                new[frame.unknowns.tilt] += (kept - across) / frame.arm
+        return new
+
+    # --- tilts of pads far from their equilibrium -----------------------------------------------
+
+    def settle(self, q: Array, layers: LayerIntegrals) -> Array:
+        """Return `q` with every pad's tilt near its root at the journal's position.
+
+        Decides which pads are unloaded, and lets their films stand still in `problem`.
+        """
+        q = q.copy()
+        brackets: dict[int, tuple[float, float]] = {}
+        asked: list[int] = []
+        for number, frame in enumerate(self.frames):
+            limits = frame.tilt_limits(self.whole.geometry, q)
+            above = frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance
+            if self._asks(frame, above):
+                asked.append(number)
+            elif above:
+                brackets[number] = (max(frame.level_tilt(q), limits[0]), limits[1])
+            q[frame.unknowns.tilt] = frame.idle_tilt(self.whole.geometry, q)
+        full: Flags | None = None
+        if asked:
+            found, full = self._sampled(q, asked, layers)
+            brackets.update(found)
+        q = self._bracketed(q, brackets, layers, full)
+        self._keep_out(frozenset(range(len(self.frames))) - frozenset(brackets), q)
+        return q
+
+    @property
+    def _fed(self) -> bool:
+        """Whether grooves press on the pads' edges, so that no pad need be without pressure."""
+        return any(groove.supply_pressure > 0.0 for groove in self.whole.bearing.grooves)
+
+    def _keep_out(self, unloaded: frozenset[int], q: Array) -> None:
+        self._returned |= self.unloaded - unloaded
+        self.unloaded = unloaded
+        self.problem = self.whole
+        if unloaded:
+            columns = np.isin(self.whole.mesh.region, list(unloaded))
+            geometry = self.whole.geometry.without(columns, q)
+            self.problem = replace(self.whole, geometry=geometry)
+
+    def _levers(self, state: FilmState) -> Array:
+        """Moment of each pad over (R + t) times its pressure's integral; NaN without pressure."""
+        load = state.solution.pressure * state.operator.area
+        levers = np.full(len(self.frames), np.nan)
+        for number, frame in enumerate(self.frames):
+            part = load[frame.columns]
+            total = float(np.abs(part).sum())
+            if total > 0.0:
+                levers[number] = -float((part * frame.sine[CENTER]).sum()) / total
+        return levers
+
+    def _sampled(
+        self, q: Array, asked: list[int], layers: LayerIntegrals
+    ) -> tuple[dict[int, tuple[float, float]], Flags | None]:
+        """Bracket the uppermost root of each pad `asked` for, where its moment falls."""
+        limits = {n: self.frames[n].tilt_limits(self.whole.geometry, q) for n in asked}
+        shares = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        levers, full = [], None
+        for share in shares:
+            for number in asked:
+                low, high = limits[number]
+                q[self.frames[number].unknowns.tilt] = low + share * (high - low)
+            state = film_state(self.whole, q, layers, start=full)
+            full = state.solution.full
+            levers.append(self._levers(state))
+        found: dict[int, tuple[float, float]] = {}
+        for number in asked:
+            frame, (low, high) = self.frames[number], limits[number]
+            values = np.array([row[number] for row in levers])
+            rising = np.flatnonzero(values > 0.0)
+            if rising.size and rising[-1] + 1 < SAMPLES:
+                at = low + shares[[rising[-1], rising[-1] + 1]] * (high - low)
+                found[number] = (float(at[0]), float(at[1]))
+            elif rising.size:
+                found[number] = (float(low + shares[-1] * (high - low)), high)
+            else:
+                q[frame.unknowns.tilt] = frame.idle_tilt(self.whole.geometry, q)
+        return found, full
+
+    def _bracketed(
+        self,
+        q: Array,
+        brackets: dict[int, tuple[float, float]],
+        layers: LayerIntegrals,
+        full: Flags | None,
+    ) -> Array:
+        """Find all bracketed roots roughly, each pad by itself but in the same films (Illinois)."""
+        roots = {n: _Root(low, high) for n, (low, high) in brackets.items()}
+        for _ in range(40):
+            for number, root in roots.items():
+                q[self.frames[number].unknowns.tilt] = root.next
+            state = film_state(self.whole, q, layers, start=full)
+            full = state.solution.full
+            levers = self._levers(state)
+            for number, root in roots.items():
+                root.record(float(levers[number]), SETTLED * self.frames[number].pad.arc)
+            if all(root.found for root in roots.values()):
+                break
+        return q
+
+    def changed(self, q: Array) -> bool:
+        """Whether other pads than the ones taken as unloaded are so at `q`, as far as E_n tells."""
+        for number, frame in enumerate(self.frames):
+            above = frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance
+            if above == (number in self.unloaded) and not self._asks(frame, above):
+                return True
+        return False
+
+    def needs_sampling(self, q: Array) -> bool:
+        """Whether a pad may have a root at `q` that only looking for it shows."""
+        return any(
+            self._asks(frame, frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance)
+            for frame in self.frames
+        )
+
+    def _asks(self, frame: PadFrame, above: bool) -> bool:
+        return self._fed or (not above and frame.pad.offset > 0.5)
+
+    @property
+    def supports_load(self) -> bool:
+        """Whether forces along the pivots can add up to the load's direction."""
+        if self._fed:
+            return True
+        angles = [math.remainder(f.pad.pivot_angle, 2.0 * math.pi) for f in self.frames]
+        if any(abs(angle) < 1e-9 for angle in angles):
+            return True
+        ahead = [angle for angle in angles if 0.0 < angle < math.pi]
+        behind = [angle for angle in angles if -math.pi < angle < 0.0]
+        return bool(ahead and behind) and min(ahead) - max(behind) < math.pi
+
+
+@dataclass
+class _Root:
+    """Root of a falling function in a bracket, by the Illinois method."""
+
+    low: float
+    high: float
+    at_low: float | None = None
+    at_high: float | None = None
+    found: bool = False
+    side: int = 0
+
+    @property
+    def next(self) -> float:
+        """Where to look next."""
+        if self.found:
+            return self._here
+        width = self.high - self.low
+        if self.at_low is None or self.at_high is None:
+            # From a bracket whose ends are known by their sign: nearer to the lower one, where the
+            # roots of heavily loaded pads lie as well as those of lightly loaded ones.
+            self._here = self.low + (0.3 if self.at_low is None else 0.5) * width
+        else:
+            share = self.at_low / (self.at_low - self.at_high)
+            self._here = self.low + min(max(share, 0.02), 0.98) * width
+        return self._here
+
+    def record(self, value: float, tolerance: float) -> None:
+        """Take notice of the value at `next`; NaN: below any root."""
+        if self.found:
+            return
+        narrow = self.high - self.low <= 1e-12 * max(abs(self.high), abs(self.low))
+        if abs(value) <= tolerance or narrow:
+            self.found = True
+        elif value > 0.0 or math.isnan(value):
+            if self.side < 0 and self.at_high is not None:
+                self.at_high *= 0.5
+            self.low, self.at_low, self.side = self._here, value, -1
+            if math.isnan(value):
+                self.at_low = None
+        else:
+            if self.side > 0 and self.at_low is not None:
+                self.at_low *= 0.5
+            self.high, self.at_high, self.side = self._here, value, 1
+
+    def __post_init__(self) -> None:
+        self._here = 0.5 * (self.low + self.high)
+
+
+def _solve(matrix: Array, right: Array) -> Array:
+    try:
+        step = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        step = np.linalg.lstsq(matrix, right, rcond=1e-12)[0]
+    return np.where(np.isfinite(step), step, 0.0)
