@@ -5,33 +5,45 @@ frequency nu: A(i nu) = K(nu) + i nu C(nu). A rigid rotor of mass M per bearing 
 where det(M s^2 + A(s)) = 0. At the threshold s = i nu, and K(nu), C(nu) put into the closed form
 (`rigid_threshold`) give nu back: that is the frequency at which such a point's coefficients are
 stated, since with them the critical mass is that of the full dynamics.
+
+Tilting pads have unknowns of their own (tilt, pivot displacement, pitch), with inertia:
+A(s) = K + s C + s^2 M over journal and pads. Nothing but the film acts on the pads, so that the
+journal feels A_JJ - A_JP A_PP^-1 A_PJ, again a function of the frequency. Their 2 x 2 coefficients
+are stated at the shaft's frequency, as is usual; threshold and eigenvalues are those of the full
+matrices.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import eig
 from scipy.optimize import brentq
 
-from ..film.geometry import ROTATIONS, TRANSLATIONS
+from ..film.geometry import ROTATIONS, TRANSLATIONS, pad_unknowns
 from ..film.linearization import DynamicStiffness, linearize
 from ..film.solution import FilmSolution
+from ..model import Bearing, pad_inertia
 from ..status import Stability
-from .operating_point import FrequencyCoefficients, FullCoefficients
-from .whirl import rigid_threshold, routh_coefficients
+from .operating_point import FrequencyCoefficients, FullCoefficients, condensed
+from .whirl import WhirlThreshold, rigid_threshold, routh_coefficients
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+STANDARD_GRAVITY = 9.80665
+"""[m/s2]; turns a load into a mass where there is no threshold to compare with."""
 DEFAULT_RATIO = 0.5
 """Whirl over shaft frequency at which coefficients are stated where there is no threshold."""
 NOTICEABLE = 0.01
 """Change of K + i nu C by stored oil, relative to it, from which on points warn."""
 _RATIOS = np.linspace(0.1, 1.3, 13)
 """Among which the threshold's whirl frequency ratio is sought."""
+_PAD_RATIOS = np.geomspace(0.02, 20.0, 181)
+"""The same with pads, whose own motion may lose its damping at other frequencies."""
 _RATIO_TOLERANCE = 1e-9
 _NOTHING = 1e-9
 """Change of the stiffness by stored oil, relative to it, that counts as none."""
@@ -55,6 +67,12 @@ class FilmDynamics:
         K [N/m] and C [N s/m] without stored oil, load frame.
     stored_oil : callable or None
         A(s) in the film's frame, less K + s C there; None where the film stores nothing.
+    mass : (q, q) array or None
+        Of the pads; None without.
+    names : tuple of str
+        Of the displacements q.
+    coupled : int
+        How many of them, the first ones, are the journal's.
     """
 
     turn: Array
@@ -62,28 +80,104 @@ class FilmDynamics:
     stiffness: Array
     damping: Array
     stored_oil: Callable[[complex], ComplexArray] | None = None
+    mass: Array | None = None
+    names: tuple[str, ...] = TRANSLATIONS
+    coupled: int = 2
 
     def __call__(self, s: complex) -> ComplexArray:
         """Return A(s), (q, q) [N/m]."""
         law = self.stiffness + complex(s) * self.damping
+        if self.mass is not None:
+            law = law + s * s * self.mass
         if self.stored_oil is None:
             return law
         return law + self.turn @ self.stored_oil(s) @ self.turn.T
 
+    def reduced(self, s: complex) -> ComplexArray:
+        """Return what the journal feels of A(s) [N/m]: A_JJ - A_JP A_PP^-1 A_PJ."""
+        return condensed(self(s), self.coupled)
+
+    @property
+    def has_pads(self) -> bool:
+        """Whether there are displacements besides the journal's."""
+        return self.mass is not None
+
     def stated_coefficients(self) -> tuple[Array, Array, float | None]:
-        """Return K, C and the whirl frequency ratio at which they hold; None: at any."""
+        """Return K, C of the journal and the whirl frequency ratio at which they hold.
+
+        None: at any.
+        """
+        if self.has_pads:
+            return *self.coefficients(1.0), 1.0
         if self.stored_oil is None:
             return self.stiffness, self.damping, None
         ratio = self.threshold_ratio() or DEFAULT_RATIO
         return *self.coefficients(ratio), ratio
 
     def coefficients(self, frequency_ratio: float) -> tuple[Array, Array]:
-        """Return K [N/m] and C [N s/m] at a whirl frequency over shaft frequency above zero."""
+        """Return the journal's K [N/m] and C [N s/m] at a whirl over shaft frequency above zero."""
+        if self.stored_oil is None and not self.has_pads:
+            return self.stiffness, self.damping
+        frequency = frequency_ratio * self.speed
+        stiffness = self.reduced(1j * frequency)
+        return stiffness.real.copy(), stiffness.imag / frequency
+
+    def all_coefficients(self, frequency_ratio: float) -> tuple[Array, Array]:
+        """Return K and C over all displacements, the oil stored at that frequency included."""
         if self.stored_oil is None:
             return self.stiffness, self.damping
         frequency = frequency_ratio * self.speed
-        stiffness = self(1j * frequency)
-        return stiffness.real.copy(), stiffness.imag / frequency
+        stored = self.turn @ self.stored_oil(1j * frequency) @ self.turn.T
+        return self.stiffness + stored.real, self.damping + stored.imag / frequency
+
+    def threshold(self, *, load: float, radial_clearance: float) -> WhirlThreshold:
+        """Return the verdict on a rigid rotor, with all of the film's and the pads' dynamics.
+
+        Parameters
+        ----------
+        load, radial_clearance : float
+            [N], [m]; for the dimensionless critical mass.
+        """
+        if not self.has_pads:
+            stiffness, damping, _ = self.stated_coefficients()
+            return rigid_threshold(
+                stiffness, damping, self.speed, load=load, radial_clearance=radial_clearance
+            )
+        crossings = self._crossings()
+        below = 0.5 * crossings[0][0] if crossings else load / STANDARD_GRAVITY
+        stable = bool(np.max(_pad_eigenvalues(self, below).real) < 0.0)
+        if not crossings:
+            verdict = Stability.ALWAYS_STABLE if stable else Stability.ALWAYS_UNSTABLE
+            return WhirlThreshold(verdict)
+        mass, ratio = crossings[0]
+        if not stable:
+            above = float(np.max(_pad_eigenvalues(self, 2.0 * mass).real))
+            if len(crossings) > 1 or above >= 0.0:
+                return WhirlThreshold(Stability.ALWAYS_UNSTABLE)
+        frequency = ratio * self.speed
+        return WhirlThreshold(
+            Stability.THRESHOLD if stable else Stability.REVERSED_THRESHOLD,
+            mass,
+            frequency,
+            ratio,
+            mass * radial_clearance * self.speed**2 / load,
+        )
+
+    def _crossings(self) -> list[tuple[float, float]]:
+        """Masses at which an eigenvalue is i nu, ascending, with nu over the shaft's frequency.
+
+        There m nu^2 is a real eigenvalue of the reduced A(i nu).
+        """
+        found: list[tuple[float, float]] = []
+        values = [self._threshold_misfit(ratio) for ratio in _PAD_RATIOS]
+        for i in np.flatnonzero(np.diff(np.sign(values)) != 0):
+            bracket = float(_PAD_RATIOS[i]), float(_PAD_RATIOS[i + 1])
+            ratio = float(brentq(self._threshold_misfit, *bracket, xtol=_RATIO_TOLERANCE))  # type: ignore[arg-type]
+            loads = np.linalg.eigvals(self.reduced(1j * ratio * self.speed))
+            real = loads[np.argmin(np.abs(loads.imag) / np.abs(loads))]
+            if abs(real.imag) < 1e-6 * abs(real) and real.real > 0.0:
+                found.append((float(real.real) / (ratio * self.speed) ** 2, ratio))
+        return sorted(found)
 
     def threshold_ratio(self) -> float | None:
         """Return the whirl frequency ratio at the rigid rotor's threshold; None without one.
@@ -131,26 +225,36 @@ def film_dynamics(
     law = DynamicStiffness(state, rotations=rotations)
 
     def stored_oil(s: complex) -> ComplexArray:
-        return law(s) - stiffness - s * damping
+        return law(s)[np.ix_(keep, keep)] - stiffness - s * damping
 
+    names, keep = _moving(solution.problem.bearing, solution.unloaded, rotations)
+    stiffness, damping = stiffness[np.ix_(keep, keep)], damping[np.ix_(keep, keep)]
     stores = False
     if solution.problem.rupture.conserves_mass and np.isfinite(stiffness).all():
         changed = np.abs(stored_oil(1j * DEFAULT_RATIO * speed)).max()
         stores = bool(changed > _NOTHING * np.abs(stiffness).max())
-    held = stiffness if following is None else following
+    held = stiffness if following is None else following[np.ix_(keep, keep)]
+    mass = None
+    if solution.problem.bearing.pads:
+        turn = np.eye(len(keep))
+        mass, pivots = _pad_matrices(solution)
+        mass, held = mass[np.ix_(keep, keep)], held + pivots[np.ix_(keep, keep)]
     return FilmDynamics(
-        turn,
-        speed,
-        turn @ held @ turn.T,
-        turn @ damping @ turn.T,
-        stored_oil if stores else None,
+        turn=turn,
+        speed=speed,
+        stiffness=turn @ held @ turn.T,
+        damping=turn @ damping @ turn.T,
+        stored_oil=stored_oil if stores else None,
+        mass=mass,
+        names=names,
+        coupled=4 if rotations else 2,
     )
 
 
 def full_coefficients(
-    solution: FilmSolution, turn: Array, frequency_ratio: float | None
+    solution: FilmSolution, turn: Array, frequency_ratio: float | None, *, rotations: bool
 ) -> FullCoefficients:
-    """Return K, C and M over the journal's displacements and rotations, load frame.
+    """Return K, C and M over journal and pads, load frame.
 
     Parameters
     ----------
@@ -159,11 +263,69 @@ def full_coefficients(
         From the film's frame to the load frame.
     frequency_ratio : float or None
         Whirl over shaft frequency at which they are wanted; None: they hold at any.
+    rotations : bool
+        Whether to add the journal's rotations.
     """
-    turn = np.asarray(np.kron(np.eye(2), turn), dtype=float)
-    dynamics = film_dynamics(solution, turn, rotations=True)
-    stiffness, damping = dynamics.coefficients(frequency_ratio or DEFAULT_RATIO)
-    return FullCoefficients(TRANSLATIONS + ROTATIONS, stiffness, damping, np.zeros_like(stiffness))
+    turn = np.asarray(np.kron(np.eye(2), turn), dtype=float) if rotations else turn
+    dynamics = film_dynamics(solution, turn, rotations=rotations)
+    stiffness, damping = dynamics.all_coefficients(frequency_ratio or DEFAULT_RATIO)
+    mass = np.zeros_like(stiffness) if dynamics.mass is None else dynamics.mass
+    return FullCoefficients(dynamics.names, stiffness, damping, mass)
+
+
+def _moving(
+    bearing: Bearing, unloaded: Collection[int], rotations: bool
+) -> tuple[tuple[str, ...], list[int]]:
+    """Names and places of the displacements: the journal's, then those of loaded pads.
+
+    `linearize` gives the journal's rotations last.
+    """
+    names, pads = pad_unknowns(bearing)
+    out = {place for number in unloaded for place in pads[number].places}
+    keep = [place for place in range(2, len(names)) if place not in out]
+    journal, places = TRANSLATIONS, [0, 1]
+    if rotations:
+        journal, places = TRANSLATIONS + ROTATIONS, [0, 1, len(names), len(names) + 1]
+    return (*journal, *(names[place] for place in keep)), places + keep
+
+
+def _pad_matrices(solution: FilmSolution) -> tuple[Array, Array]:
+    """Mass of the pads and stiffness of their pivots at the deflections, (q + 2, q + 2) each."""
+    bearing, size = solution.problem.bearing, solution.state.displacement.size + 2
+    mass, stiffness = np.zeros((2, size, size))
+    for pad, unknowns in zip(bearing.pads, pad_unknowns(bearing)[1], strict=True):
+        inertia = pad_inertia(pad, bearing.journal_radius, bearing.length)
+        tilt, pivot = unknowns.tilt, unknowns.pivot
+        mass[tilt, tilt] = inertia.tilt
+        if pivot is not None:
+            deflection = float(solution.state.displacement[pivot])
+            stiffness[pivot, pivot] = pad.pivot.stiffness_at(deflection)
+            mass[pivot, pivot] = inertia.mass
+            # The centre of mass ahead of the pivot moves inwards as the pad tilts.
+            mass[pivot, tilt] = mass[tilt, pivot] = -inertia.coupling
+        if unknowns.pitch is not None:
+            mass[unknowns.pitch, unknowns.pitch] = inertia.pitch
+    return mass, stiffness
+
+
+def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
+    """Finite eigenvalues [1/s] of a rigid rotor of `mass` per bearing [kg] and the pads.
+
+    Without oil stored in the film. Massless unknowns leave infinite eigenvalues, which are dropped.
+    """
+    size = len(dynamics.names)
+    inertia = np.zeros((size, size)) if dynamics.mass is None else dynamics.mass.copy()
+    inertia[[0, 1], [0, 1]] += mass
+    # In units of the stiffnesses and the shaft's frequency all entries are of order one.
+    scale = 1.0 / np.sqrt(np.abs(np.diag(dynamics.stiffness)))
+    scaling, omega = scale[:, None] * scale[None, :], dynamics.speed
+    k, c, m = (part * scaling for part in (dynamics.stiffness, dynamics.damping, inertia))
+    eye, none = np.eye(size), np.zeros((size, size))
+    left = np.block([[none, eye], [-k, -omega * c]])
+    right = np.block([[eye, none], [none, omega**2 * m]])
+    alpha, beta = eig(left, right, right=False, homogeneous_eigvals=True)
+    finite = np.abs(beta) > 1e-10 * np.abs(alpha)
+    return omega * alpha[finite] / beta[finite]
 
 
 def frequency_coefficients(
@@ -180,10 +342,10 @@ def stored_oil_warnings(
     dynamics: FilmDynamics, stiffness: Array, damping: Array, ratio: float | None
 ) -> tuple[str, ...]:
     """Say at which frequency K and C hold, where the stored oil changes them noticeably."""
-    if ratio is None:
+    if ratio is None or dynamics.stored_oil is None:
         return ()
     with_oil = stiffness + 1j * ratio * dynamics.speed * damping
-    without = dynamics.stiffness + 1j * ratio * dynamics.speed * dynamics.damping
+    without = replace(dynamics, stored_oil=None).reduced(1j * ratio * dynamics.speed)
     change = float(np.abs(with_oil - without).max() / np.abs(without).max())
     if change < NOTICEABLE:
         return ()
@@ -206,15 +368,21 @@ def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
     ArithmeticError
         An eigenvalue did not converge.
     """
-    ratio = dynamics.threshold_ratio() or DEFAULT_RATIO
-    stiffness, damping = dynamics.coefficients(ratio)
-    size = len(stiffness)
-    state = np.block([[np.zeros((size, size)), np.eye(size)], [-stiffness / mass, -damping / mass]])
+    guesses = _pad_eigenvalues(dynamics, mass)
+    if dynamics.stored_oil is None:
+        return guesses
+    if not dynamics.has_pads:
+        ratio = dynamics.threshold_ratio() or DEFAULT_RATIO
+        stiffness, damping = dynamics.coefficients(ratio)
+        unit = np.eye(2)
+        state = np.block([[np.zeros((2, 2)), unit], [-stiffness / mass, -damping / mass]])
+        guesses = np.linalg.eigvals(state)
+    inertia = np.zeros((len(dynamics.names), len(dynamics.names)))
+    inertia[[0, 1], [0, 1]] = mass
 
     def law(s: complex) -> ComplexArray:
-        return dynamics(s) + mass * s * s * np.eye(size)
+        return dynamics(s) + s * s * inertia
 
-    guesses = np.linalg.eigvals(state)
     found: list[complex] = []
     for guess in sorted(guesses[guesses.imag >= 0.0], key=lambda s: -s.real):
         root = refine_eigenvalue(law, guess, known=found)

@@ -89,16 +89,66 @@ class FullCoefficients:
     ----------
     names : tuple of str
         Degrees of freedom: x, y [m]; theta_x, theta_y, the journal's rotations about x and y
-        through the bearing's mid-plane [rad].
+        through the bearing's mid-plane [rad]. Then of each loaded pad, counted from 1, tilt_1
+        [rad], and where its pivot has them pivot_1 (outwards) [m] and pitch_1 [rad].
     stiffness, damping, mass : (q, q) arrays
-        K_ij = -dQ_i/dq_j, C_ij = -dQ_i/dq_j-dot, Q the film's forces [N] and moments [N m] on the
-        journal. A fixed bearing's film has no mass.
+        K_ij = -dQ_i/dq_j, C_ij = -dQ_i/dq_j-dot, Q the film's forces [N] and moments [N m] on
+        journal and pads, and the pivots' on the pads. The mass is the pads' own.
     """
 
     names: tuple[str, ...]
     stiffness: Array
     damping: Array
     mass: Array
+
+    def reduced(self, s: complex) -> NDArray[np.complex128]:
+        """Force per displacement that the journal feels of a motion exp(s t), (2, 2) or (4, 4)."""
+        law = self.stiffness + s * self.damping + s * s * self.mass
+        return condensed(law, 4 if ROTATION in self.names else 2)
+
+
+ROTATION = "theta_x"
+"""Name of the journal's rotation about x; it is there with its fellow or not at all."""
+
+
+def condensed(law: NDArray[np.complex128], kept: int) -> NDArray[np.complex128]:
+    """Eliminate all unknowns but the first `kept`, on which alone forces act."""
+    if len(law) == kept:
+        return law
+    own = np.linalg.solve(law[kept:, kept:], law[kept:, :kept])
+    return np.asarray(law[:kept, :kept] - law[:kept, kept:] @ own)
+
+
+@dataclass(frozen=True)
+class PadResult:
+    """One tilting pad at its equilibrium.
+
+    Attributes
+    ----------
+    tilt : float
+        In the direction of rotation [rad].
+    pivot_displacement : float
+        Outwards [m]; 0 for a rigid pivot.
+    pitch : float
+        About the tangent at the pivot [rad].
+    load : float
+        Force on the pivot [N].
+    max_pressure : float
+        Gauge [Pa].
+    max_temperature : float
+        Of the pad's surface [K]; isothermal: the supply's.
+    unloaded : bool
+        Its film cannot be balanced at positive pressure: the pad floats or flutters. It is kept out
+        of the equilibrium and the coefficients; its tilt is arbitrary.
+    """
+
+    tilt: float
+    pivot_displacement: float
+    pitch: float
+    load: float
+    max_pressure: float
+    max_temperature: float
+    unloaded: bool
 
 
 @dataclass(frozen=True)
@@ -147,10 +197,16 @@ class OperatingPoint:
         M_x and M_y of the film on the journal about the bearing's mid-plane [N m]; 0 where both
         halves are alike.
     coefficients_full : FullCoefficients or None
-        Where asked for (``film.rotations``): K, C and M over displacements and rotations. With
-        ``viscosity_response = following`` the rotations are still at frozen viscosity.
+        Tilting pads: K, C and M over journal and pads, of which `stiffness` and `damping` are the
+        reduction at the shaft's frequency. Where asked for (``film.rotations``), also over the
+        journal's rotations; with ``viscosity_response = following`` the rotations are still at
+        frozen viscosity.
+    pads : tuple of PadResult
+        Empty without tilting pads.
     critical_mass : float or None
-        Per bearing [kg].
+        Per bearing [kg]; with pads that of rotor and pads together.
+    critical_mass_synchronous : float or None
+        With pads, what `stiffness` and `damping` alone would give.
     critical_mass_dimensionless : float or None
         M c omega^2/W.
     whirl_frequency_ratio : float or None
@@ -207,6 +263,8 @@ class OperatingPoint:
     frequency_coefficients: FrequencyCoefficients | None = None
     moment: Array = field(default_factory=lambda: np.full(2, math.nan))
     coefficients_full: FullCoefficients | None = None
+    pads: tuple[PadResult, ...] = ()
+    critical_mass_synchronous: float | None = None
     fields: FilmFields | None = field(default=None, repr=False)
 
     @property
@@ -239,6 +297,8 @@ def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
         value = getattr(point, entry.name)
         if value is not None and entry.name in _NESTED:
             value = dataclasses.asdict(value)
+        elif entry.name == "pads":
+            value = [dataclasses.asdict(pad) for pad in value]
         record[entry.name] = plain(value)
     return record
 
@@ -273,6 +333,7 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
         names = tuple(full.pop("names"))
         matrices = {name: np.array(value, dtype=float) for name, value in full.items()}
         values["coefficients_full"] = FullCoefficients(names, **matrices)
+    values["pads"] = tuple(PadResult(**pad) for pad in values.get("pads", ()))
     return OperatingPoint(**values)
 
 

@@ -17,6 +17,7 @@ from ..film.flow import film_flow
 from ..film.heat import HeatBalance, with_groove_oil
 from ..film.linearization import following_stiffness
 from ..film.losses import friction_force, journal_moment, peak, side_flow
+from ..film.pad_solution import solve_pads
 from ..film.solution import FilmSolution, WarmStart, solve_film
 from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
 from ..status import SolveStatus
@@ -28,6 +29,7 @@ from .dynamics import (
     stored_oil_warnings,
 )
 from .operating_point import FilmFields, OperatingPoint, failed_point
+from .pads import pad_results, unloaded_warnings
 from .whirl import rigid_threshold
 
 if TYPE_CHECKING:
@@ -144,10 +146,15 @@ def _solution(case: Case, speed: float, initial: WarmStart | None) -> FilmSoluti
     """Solve from the first guess, and without it where that leads nowhere."""
     if initial is not None:
         with suppress(NoFilmError, SingularFilmError):
-            solution = solve_film(case, speed, initial=initial)
+            solution = _film(case, speed, initial)
             if solution.status is SolveStatus.CONVERGED:
                 return solution
-    return solve_film(case, speed)
+    return _film(case, speed, None)
+
+
+def _film(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
+    solver = solve_pads if case.bearing.pads else solve_film
+    return solver(case, speed, initial=initial)
 
 
 def operating_point(
@@ -164,8 +171,8 @@ def operating_point(
     turn = _rotation(solution.frame)
     dynamics = film_dynamics(solution, turn, following=following)
     stiffness, damping, frequency_ratio = dynamics.stated_coefficients()
-    center = turn @ state.displacement
-    load = float(np.hypot(*state.force))
+    center = turn @ state.displacement[:2]
+    load = float(np.hypot(state.force[0], state.force[1]))
     clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
     viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
     fraction = liquid_fraction(solution)
@@ -194,11 +201,13 @@ def operating_point(
         all(math.isfinite(v) for k, v in numbers.items() if k != "sommerfeld_number")
         and np.isfinite(stiffness).all()
     )
-    threshold = None
+    threshold = synchronous = None
     if finite and status in _WITH_NUMBERS:
-        threshold = rigid_threshold(
+        threshold = synchronous = rigid_threshold(
             stiffness, damping, speed, load=load, radial_clearance=clearance
         )
+        if dynamics.has_pads:
+            threshold = dynamics.threshold(load=load, radial_clearance=clearance)
     elif not finite and status in _WITH_NUMBERS:
         status, message = SolveStatus.FAILED, message or "the solution is not finite"
     mean_viscosity = float(case.lubricant.viscosity(mean)) if math.isfinite(mean) else None
@@ -217,10 +226,16 @@ def operating_point(
         frequency_coefficients=frequency_coefficients(dynamics, case.film.frequency_ratios),
         moment=turn @ journal_moment(state),
         coefficients_full=(
-            full_coefficients(solution, turn, frequency_ratio) if case.film.rotations else None
+            full_coefficients(solution, turn, frequency_ratio, rotations=case.film.rotations)
+            if case.film.rotations or dynamics.has_pads
+            else None
         ),
         critical_mass=threshold.critical_mass if threshold else None,
         critical_mass_dimensionless=threshold.critical_mass_dimensionless if threshold else None,
+        critical_mass_synchronous=synchronous.critical_mass
+        if synchronous and dynamics.has_pads
+        else None,
+        pads=pad_results(solution),
         whirl_frequency_ratio=threshold.whirl_frequency_ratio if threshold else None,
         stability=threshold.stability if threshold else None,
         iterations=solution.iterations,
@@ -231,6 +246,7 @@ def operating_point(
                 mean_viscosity=mean_viscosity, heat_balance=heat,
             ),
             *stored_oil_warnings(dynamics, stiffness, damping, frequency_ratio),
+            *unloaded_warnings(solution.unloaded),
         ),
         heat_balance=heat,
         heat_imbalance=None if heat is None else heat.imbalance,

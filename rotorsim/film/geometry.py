@@ -94,12 +94,15 @@ class FilmGeometry:
         Cells with metal behind the film: outside the grooves.
     multiplicity : float
         How many identical parts the mesh stands for.
+    still : (n,) bool array or None
+        Columns whose film no displacement moves, as that of an unloaded pad.
     """
 
     rest: Array
     displacements: Displacements
     land: Flags
     multiplicity: float
+    still: Flags | None = None
 
     def thickness(self, q: Array) -> Array:
         """Film thickness [m], (5, n, m), at the displacements `q`."""
@@ -119,10 +122,18 @@ class FilmGeometry:
 
     def without(self, columns: Flags, q: Array) -> FilmGeometry:
         """Return the geometry whose film in `columns` (n,) stays as it is at `q`, without force."""
-        rest, shapes = self.rest.copy(), self.displacements.shapes.copy()
+        rest = self.rest.copy()
         rest[:, columns] = self.thickness(q)[:, columns]
-        shapes[:, :, columns] = 0.0
-        return replace(self, rest=rest, displacements=replace(self.displacements, shapes=shapes))
+        still = replace(self, rest=rest, still=columns)
+        return replace(still, displacements=still.moving(self.displacements))
+
+    def moving(self, displacements: Displacements) -> Displacements:
+        """Return `displacements` as far as they move this film: not in the columns kept still."""
+        if self.still is None:
+            return displacements
+        shapes = displacements.shapes.copy()
+        shapes[:, :, self.still] = 0.0
+        return replace(displacements, shapes=shapes)
 
     def forces(self, load: Array) -> Array:
         """Generalised forces Q_q of the film, (q,), for the `load` p dA of each cell [N]."""

@@ -85,7 +85,7 @@ def film_motions(state: FilmState, *, rotations: bool = False) -> tuple[Motions,
     own = problem.geometry.displacements
     if not rotations:
         return (Motions(state, own, factor),)
-    turning = journal_rotations(problem.bearing, problem.mesh)
+    turning = problem.geometry.moving(journal_rotations(problem.bearing, problem.mesh))
     if not problem.mesh.half:
         return (Motions(state, own.joined(turning), factor),)
     topology = problem.topology.antisymmetric()

@@ -138,4 +138,5 @@ def _conclude(search: PadSearch, cold: _Cold, thermal: ThermalFilm | None) -> Fi
         message=message,
         iterations=cold.steps + (thermal.iterations if thermal else 0),
         residual=residual,
+        unloaded=search.unloaded,
     )

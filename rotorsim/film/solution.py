@@ -82,6 +82,8 @@ class FilmSolution:
     message : str
     iterations : int
     residual : float
+    unloaded : frozenset of int
+        Pads whose film cannot be balanced at positive pressure, counted from 0.
     """
 
     problem: FilmProblem
@@ -92,6 +94,7 @@ class FilmSolution:
     message: str
     iterations: int
     residual: float
+    unloaded: frozenset[int] = frozenset()
 
     @property
     def warm_start(self) -> WarmStart:
