@@ -35,6 +35,8 @@ ORDER = 0.2
 """Distance of an observed order of convergence from the scheme's."""
 COEFFICIENT_DIFFERENCES = 1e-5
 """K and C against central differences of the force, relative to the largest entry."""
+SYMMETRY = 1e-8
+"""Coefficients across a symmetric bearing's axis, relative to those along it."""
 NAHME = 1e-4
 """Four digits of friction and of temperature rise."""
 ROUNDING = 1e-10

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eig
+from scipy.linalg import eigvals
 from scipy.optimize import brentq
 
 from ..film.geometry import ROTATIONS, TRANSLATIONS, pad_unknowns
@@ -170,12 +170,12 @@ class FilmDynamics:
         """
         found: list[tuple[float, float]] = []
         values = [self._threshold_misfit(ratio) for ratio in _PAD_RATIOS]
-        for i in np.flatnonzero(np.diff(np.sign(values)) != 0):
+        for i in np.flatnonzero(np.diff(np.sign(values)) * np.sign(values)[:-1]):
             bracket = float(_PAD_RATIOS[i]), float(_PAD_RATIOS[i + 1])
             ratio = float(brentq(self._threshold_misfit, *bracket, xtol=_RATIO_TOLERANCE))  # type: ignore[arg-type]
             loads = np.linalg.eigvals(self.reduced(1j * ratio * self.speed))
-            real = loads[np.argmin(np.abs(loads.imag) / np.abs(loads))]
-            if abs(real.imag) < 1e-6 * abs(real) and real.real > 0.0:
+            real = loads[np.argmin(np.abs(loads.imag))]
+            if real.real > 1e6 * abs(real.imag):
                 found.append((float(real.real) / (ratio * self.speed) ** 2, ratio))
         return sorted(found)
 
@@ -198,7 +198,9 @@ class FilmDynamics:
         """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold."""
         routh = routh_coefficients(*self.coefficients(ratio))
         squeezed = (ratio * self.speed) ** 2 * routh.det_damping
-        return float((routh.det_shifted - squeezed) / (abs(routh.det_stiffness) + abs(squeezed)))
+        size = abs(routh.det_stiffness) + abs(squeezed)
+        # Without stiffness and damping across there is nothing to lose its balance.
+        return float((routh.det_shifted - squeezed) / size) if size > 0.0 else 0.0
 
 
 def film_dynamics(
@@ -323,9 +325,9 @@ def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
     eye, none = np.eye(size), np.zeros((size, size))
     left = np.block([[none, eye], [-k, -omega * c]])
     right = np.block([[eye, none], [none, omega**2 * m]])
-    alpha, beta = eig(left, right, right=False, homogeneous_eigvals=True)
-    finite = np.abs(beta) > 1e-10 * np.abs(alpha)
-    return omega * alpha[finite] / beta[finite]
+    above, below = np.asarray(eigvals(left, right, homogeneous_eigvals=True))
+    finite = np.abs(below) > 1e-10 * np.abs(above)
+    return np.asarray(omega * above[finite] / below[finite], dtype=complex)
 
 
 def frequency_coefficients(

@@ -299,6 +299,8 @@ def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
             value = dataclasses.asdict(value)
         elif entry.name == "pads":
             value = [dataclasses.asdict(pad) for pad in value]
+        elif dataclasses.is_dataclass(value):
+            value = dataclasses.asdict(value)  # type: ignore[arg-type]
         record[entry.name] = plain(value)
     return record
 

@@ -176,7 +176,8 @@ def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, 
     A flexible pivot adds its radial displacement, positive outwards. A ball lets the pad pitch,
     which a misaligned journal asks of it; aligned, pitch and the other displacements are apart.
     """
-    names, places = list(TRANSLATIONS), []
+    names: list[str] = [*TRANSLATIONS]
+    places = []
     for number, pad in enumerate(bearing.pads, start=1):
         tilt = len(names)
         names.append(f"tilt_{number}")
@@ -192,7 +193,7 @@ def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, 
 
 
 def _pads_at_rest(bearing: Bearing, mesh: FilmMesh) -> Array:
-    """h [m] of untilted pads around a centred journal, (3, n): centres, west and east faces."""
+    """H [m] of untilted pads around a centred journal, (3, n): centres, west and east faces."""
     theta = _angles(mesh)
     h = np.full(theta.shape, bearing.radial_clearance)
     for number, pad in enumerate(bearing.pads):

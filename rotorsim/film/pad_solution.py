@@ -59,6 +59,8 @@ def solve_pads(case: Case, speed: float, *, initial: WarmStart | None = None) ->
     supply = float(case.lubricant.viscosity(case.thermal.supply_temperature))
     layers = isoviscous_layers(problem.mesh.shape, supply)
     q = search.first_guess()
+    if initial is not None and initial.pads is not None and initial.pads.size == q.size - 2:
+        q = np.array([*initial.position, *initial.pads])
     film = _isothermal(search, q, layers)
     if case.thermal.model is ThermalModel.ISOTHERMAL or not film.converged:
         return _conclude(search, film, None)
@@ -128,7 +130,9 @@ def _conclude(search: PadSearch, cold: _Cold, thermal: ThermalFilm | None) -> Fi
     elif not converged:
         status = SolveStatus.NOT_CONVERGED
         cause = thermal.cause if thermal else f"the forces are off by {cold.off:.1e} of the load"
-        message = f"stopped after {cold.steps} iterations: {cause}; the numbers are the last iterate"
+        message = (
+            f"stopped after {cold.steps} iterations: {cause}; the numbers are the last iterate"
+        )
     return FilmSolution(
         problem=search.problem,
         state=replace(state, problem=search.problem),

@@ -11,9 +11,9 @@ root that carries load lies above it, and there the moment falls with the tilt. 
 bracketed: at E_t = 0 all pressure lies ahead of the pivot, where the trailing edge touches, behind
 it. With E_n <= 0 only a pivot behind the middle has one, if any; a pad without one is unloaded.
 
-The load of each pad is then a rising function of E_n alone, so that Newton's method for the journal,
-kept off the pads, finds the one equilibrium; journal, tilts, pivots and pitches move together, with
-the film's own stiffness for the Jacobian.
+The load of each pad is then a rising function of E_n alone, so that Newton's method for the
+journal, kept off the pads, finds the one equilibrium; journal, tilts, pivots and pitches move
+together, with the film's own stiffness for the Jacobian.
 """
 
 from __future__ import annotations
@@ -124,9 +124,7 @@ def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
         columns = mesh.region == number
         sine = np.sin(angles[:, columns] - pad.pivot_angle)[:, :, None]
         arm = bearing.journal_radius + pad.thickness
-        frames.append(
-            PadFrame(pad, bearing.clearance_of(pad), arm, columns, unknowns, sine)
-        )
+        frames.append(PadFrame(pad, bearing.clearance_of(pad), arm, columns, unknowns, sine))
     return tuple(frames)
 
 
@@ -305,7 +303,7 @@ class PadSearch:
             if number in self.unloaded:
                 room = 0.5 * (frame.clearance - before)
                 after = max(after, before)
-            elif number in self._returned and 0.0 < before and after < before:
+            elif number in self._returned and before > 0.0 and after < before:
                 room = min(room, 0.75 * before)
             scale = min(scale, max(room, 0.0) / max(abs(after - before), 1e-300))
         film = geometry.thickness(old)
@@ -347,7 +345,7 @@ class PadSearch:
 
         Decides which pads are unloaded, and lets their films stand still in `problem`.
         """
-        q = q.copy()
+        q, guess = q.copy(), q
         brackets: dict[int, tuple[float, float]] = {}
         asked: list[int] = []
         for number, frame in enumerate(self.frames):
@@ -362,7 +360,11 @@ class PadSearch:
         if asked:
             found, full = self._sampled(q, asked, layers)
             brackets.update(found)
-        q = self._bracketed(q, brackets, layers, full)
+        roots = {
+            number: _Root(*bracket, guess=float(guess[self.frames[number].unknowns.tilt]))
+            for number, bracket in brackets.items()
+        }
+        q = self._bracketed(q, roots, layers, full)
         self._keep_out(frozenset(range(len(self.frames))) - frozenset(brackets), q)
         return q
 
@@ -422,12 +424,11 @@ class PadSearch:
     def _bracketed(
         self,
         q: Array,
-        brackets: dict[int, tuple[float, float]],
+        roots: dict[int, _Root],
         layers: LayerIntegrals,
         full: Flags | None,
     ) -> Array:
         """Find all bracketed roots roughly, each pad by itself but in the same films (Illinois)."""
-        roots = {n: _Root(low, high) for n, (low, high) in brackets.items()}
         for _ in range(40):
             for number, root in roots.items():
                 q[self.frames[number].unknowns.tilt] = root.next
@@ -468,7 +469,7 @@ class PadSearch:
             return True
         ahead = [angle for angle in angles if 0.0 < angle < math.pi]
         behind = [angle for angle in angles if -math.pi < angle < 0.0]
-        return bool(ahead and behind) and min(ahead) - max(behind) < math.pi
+        return bool(ahead and behind) and min(ahead) - max(behind) < math.pi - 1e-6
 
 
 @dataclass
@@ -477,25 +478,25 @@ class _Root:
 
     low: float
     high: float
+    guess: float
     at_low: float | None = None
     at_high: float | None = None
     found: bool = False
     side: int = 0
 
-    @property
-    def next(self) -> float:
+    def __post_init__(self) -> None:
+        inside = self.low < self.guess < self.high
+        self.next = self.guess if inside else self.low + 0.3 * (self.high - self.low)
         """Where to look next."""
-        if self.found:
-            return self._here
+
+    def _choose(self) -> float:
         width = self.high - self.low
         if self.at_low is None or self.at_high is None:
             # From a bracket whose ends are known by their sign: nearer to the lower one, where the
             # roots of heavily loaded pads lie as well as those of lightly loaded ones.
-            self._here = self.low + (0.3 if self.at_low is None else 0.5) * width
-        else:
-            share = self.at_low / (self.at_low - self.at_high)
-            self._here = self.low + min(max(share, 0.02), 0.98) * width
-        return self._here
+            return self.low + (0.3 if self.at_low is None else 0.5) * width
+        share = self.at_low / (self.at_low - self.at_high)
+        return self.low + min(max(share, 0.02), 0.98) * width
 
     def record(self, value: float, tolerance: float) -> None:
         """Take notice of the value at `next`; NaN: below any root."""
@@ -507,16 +508,15 @@ class _Root:
         elif value > 0.0 or math.isnan(value):
             if self.side < 0 and self.at_high is not None:
                 self.at_high *= 0.5
-            self.low, self.at_low, self.side = self._here, value, -1
+            self.low, self.at_low, self.side = self.next, value, -1
             if math.isnan(value):
                 self.at_low = None
         else:
             if self.side > 0 and self.at_low is not None:
                 self.at_low *= 0.5
-            self.high, self.at_high, self.side = self._here, value, 1
-
-    def __post_init__(self) -> None:
-        self._here = 0.5 * (self.low + self.high)
+            self.high, self.at_high, self.side = self.next, value, 1
+        if not self.found:
+            self.next = self._choose()
 
 
 def _solve(matrix: Array, right: Array) -> Array:

@@ -59,11 +59,14 @@ class WarmStart:
     heat : Heat or None
     full : (n, m) bool array
         Cells of full film.
+    pads : array or None
+        Displacements of tilting pads, after the journal's.
     """
 
     position: Position
     heat: Heat | None
     full: NDArray[np.bool_]
+    pads: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -103,6 +106,7 @@ class FilmSolution:
             position=_turned(_pair(self.state.displacement), self.frame),
             heat=self.thermal.heat if self.thermal is not None else None,
             full=self.state.solution.full,
+            pads=self.state.displacement[2:] if self.problem.bearing.pads else None,
         )
 
 

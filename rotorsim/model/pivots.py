@@ -172,7 +172,7 @@ class SpherePivot(_PointPivot):
 
 @dataclass(frozen=True)
 class SocketPivot(_PointPivot):
-    """A ball in a socket [m]; Hertz' law, which wants radii that differ by more than the contact."""
+    """A ball in a socket [m], by Hertz: the radii must differ by more than the contact's."""
 
     ball_radius: float = math.nan
     socket_radius: float = math.nan
