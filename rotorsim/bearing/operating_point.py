@@ -298,9 +298,7 @@ def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
         if value is not None and entry.name in _NESTED:
             value = dataclasses.asdict(value)
         elif entry.name == "pads":
-            value = [dataclasses.asdict(pad) for pad in value]
-        elif dataclasses.is_dataclass(value):
-            value = dataclasses.asdict(value)  # type: ignore[arg-type]
+            value = [dataclasses.asdict(pad) for pad in point.pads]
         record[entry.name] = plain(value)
     return record
 
