@@ -134,7 +134,7 @@ def given_table(
 
     table = read_table(path, bearing=bearing, load_direction=load_direction)
     for text in table.notes:
-        output.note(f"{path}: {text}")
+        output.warn(f"{path}: {text}")
     return table
 
 

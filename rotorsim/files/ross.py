@@ -229,8 +229,9 @@ def read(
     Raises
     ------
     TableError
-        Not such a file, several bearings and none chosen, coefficients over the frequency of the
-        whirl, or that are no numbers, or a file that says another `load_direction`.
+        Not such a file, several bearings and none chosen, coefficients over both speed and
+        frequency of the whirl, or that are no numbers, or a file that says another
+        `load_direction`.
     """
     source = Path(path)
     entries = _entries(source)
@@ -317,9 +318,14 @@ def _table(
         without_standstill,
     )
 
-    axis = _axis(bearing, ross3, source)
+    axis = _axis(bearing, source)
     notes = []
-    if axis == "frequency":
+    if axis == "frequency" and ross3:
+        notes.append(
+            "frequency is the frequency of the whirl (ROSS 3); each row is taken for a whirl at "
+            "the shaft's speed, which is wrong for a whirl at any other frequency"
+        )
+    elif axis == "frequency":
         notes.append("frequency is taken for the shaft's speed, as in ROSS 2")
     if bearing.get("n_link") is not None:
         notes.append(
@@ -351,13 +357,13 @@ def _table(
     return CoefficientTable(found)
 
 
-def _axis(bearing: dict[str, Any], ross3: bool, source: Path) -> str | None:
-    """Key of the shaft's speeds; None for constant coefficients.
+def _axis(bearing: dict[str, Any], source: Path) -> str | None:
+    """Return the key of the speeds or frequencies; None for constant coefficients.
 
     Raises
     ------
     TableError
-        The coefficients depend on the frequency of the whirl.
+        The coefficients depend on both.
     """
     speed, frequency = (bearing.get(name) is not None for name in ("speed", "frequency"))
     if speed and frequency:
@@ -365,12 +371,6 @@ def _axis(bearing: dict[str, Any], ross3: bool, source: Path) -> str | None:
             "a table over speed and whirl frequency (ROSS 3); coefficients here depend on the "
             "speed alone: save those for one whirl frequency, such as the shaft's, over speed",
             source=source, key="speed, frequency",
-        )  # fmt: skip
-    if frequency and ross3:
-        raise TableError(
-            "is the frequency of the whirl (ROSS 3), not the shaft's speed; if the coefficients "
-            "hold for a whirl at the shaft's speed, rename the key to speed",
-            source=source, key="frequency",
         )  # fmt: skip
     return "speed" if speed else "frequency" if frequency else None
 

@@ -68,11 +68,10 @@ def test_renaming_speed_of_ross3_to_frequency_of_ross2_changes_nothing(tmp_path)
     ("name", "message"),
     [
         ("01/added_mass.toml", "mxx: added mass is not known here"),
-        ("03/saved31_freq.toml", "frequency: is the frequency of the whirl .ROSS 3."),
         ("03/saved31_grid.toml", "a table over speed and whirl frequency .ROSS 3."),
     ],
 )
-def test_what_ross3_saves_over_whirl_or_with_mass_is_refused(name, message, here: CommandLine):
+def test_what_ross3_saves_over_both_or_with_mass_is_refused(name, message, here: CommandLine):
     with pytest.raises(TableError, match=message):
         read_table(case(name))
     done = here("stability", case(name), "--mass", "500 kg")
@@ -86,8 +85,15 @@ def test_a_rotor_file_of_ross3_tells_its_version_once(tmp_path):
     path.write_text(bearing, encoding="utf-8")
     assert read_table(path).speeds.tolist() == [100.0, 200.0]
     path.write_text(f'ross_version = "3.1.0"\n{bearing}', encoding="utf-8")
-    with pytest.raises(TableError, match="is the frequency of the whirl"):
-        read_table(path)
+    (note,) = read_table(path).notes
+    assert "is the frequency of the whirl (ROSS 3)" in note
+
+
+def test_a_table_over_the_frequency_of_the_whirl_is_used_with_a_warning(here: CommandLine):
+    done = here("stability", case("03/saved31_freq.toml"), "--mass", "500 kg", "-q")
+    assert done.returncode == 0
+    assert "warning: " in done.stderr
+    assert "is the frequency of the whirl (ROSS 3)" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -174,9 +180,13 @@ OK = case("07/ok.csv")
 
 
 def threshold_rpm(path: Path) -> float:
+    from rotorsim.machine.machine import Machine
     from rotorsim.machine.modes import threshold_speeds
+    from rotorsim.machine.support import TableSupport
+    from rotorsim.rotor import Rotor
 
-    (found,) = threshold_speeds(CoefficientTable.from_csv(path), mass=2000.0)
+    table = TableSupport(CoefficientTable.from_csv(path).interpolator())
+    (found,) = threshold_speeds(Machine(Rotor.rigid(2000.0), [(0, table)]))
     return found.speed / RPM
 
 
