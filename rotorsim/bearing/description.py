@@ -88,6 +88,13 @@ def point_rows(point: OperatingPoint) -> list[Row]:
         text = point_text(point, name, 4 if digits == 3 else digits)
         if text != "-" or name not in _THERMAL:
             rows.append(Row(QUANTITIES[name].label, text, QUANTITIES[name].unit))
+    factor, unit = QUANTITIES["side_flow"].factor, QUANTITIES["side_flow"].unit
+    for k, flow in enumerate(point.supply_flow, start=1):
+        rows.append(Row(f"supply flow of groove {k}", number(flow * factor), unit))
+    if np.any(np.nan_to_num(point.moment)):
+        rows.append(
+            Row("moments on the journal", ", ".join(number(m) for m in point.moment), "N m")
+        )
     return [
         *rows,
         Row("iterations", str(point.iterations)),

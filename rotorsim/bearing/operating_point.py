@@ -182,7 +182,7 @@ class OperatingPoint:
     power_loss : float
         [W]
     side_flow : float
-        Out of both ends [m3/s].
+        Out of both ends, those of grooves that are not sealed included [m3/s].
     min_film_thickness : float
         [m]
     stiffness, damping : (2, 2) arrays
@@ -193,6 +193,9 @@ class OperatingPoint:
         frequency, and at half the shaft's where there is no threshold.
     frequency_coefficients : FrequencyCoefficients or None
         Stiffness and damping at the ratios of ``film.frequency_ratio``.
+    supply_flow : tuple of float
+        Oil that each groove must be given [m3/s], in the order of the grooves: what leaves it less
+        what arrives from the film before it.
     moment : (2,) array
         M_x and M_y of the film on the journal about the bearing's mid-plane [N m]; 0 where both
         halves are alike.
@@ -261,6 +264,7 @@ class OperatingPoint:
     outlet_temperature: float | None = None
     coefficient_frequency_ratio: float | None = None
     frequency_coefficients: FrequencyCoefficients | None = None
+    supply_flow: tuple[float, ...] = ()
     moment: Array = field(default_factory=lambda: np.full(2, math.nan))
     coefficients_full: FullCoefficients | None = None
     pads: tuple[PadResult, ...] = ()
@@ -318,7 +322,8 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
     values["stability"] = None if values["stability"] is None else Stability(values["stability"])
     for name in ("stiffness", "damping"):
         values[name] = np.array(values[name], dtype=float).reshape(2, 2)
-    values["warnings"] = tuple(values["warnings"])
+    for name in ("warnings", "supply_flow"):
+        values[name] = tuple(values.get(name, ()))
     if values["heat_balance"] is not None:
         values["heat_balance"] = HeatBalance(**values["heat_balance"])
     if values.get("frequency_coefficients") is not None:

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from ..arguments import check_number, refuse_path
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
-from ..film.flow import film_flow
+from ..film.flow import FilmFlow, film_flow
 from ..film.heat import HeatBalance, with_groove_oil
 from ..film.linearization import following_stiffness
-from ..film.losses import friction_force, journal_moment, peak, side_flow
+from ..film.losses import friction_force, journal_moment, peak, side_flow, supply_flow
 from ..film.pad_solution import solve_pads
 from ..film.solution import FilmSolution, WarmStart, solve_film
 from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
@@ -175,8 +175,9 @@ def operating_point(
     load = float(np.hypot(state.force[0], state.force[1]))
     clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
     viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    fraction = liquid_fraction(solution)
-    friction = friction_force(problem, state, fraction)
+    flow = solved_flow(solution)
+    fraction = flow.liquid_fraction
+    friction = friction_force(state, fraction)
     hottest, mean = _temperatures(solution, fraction)
     thinnest = min_film_thickness(solution)
     numbers: dict[str, float] = {
@@ -192,7 +193,7 @@ def operating_point(
         "mean_temperature": mean,
         "friction_force": friction,
         "power_loss": friction * speed * radius,
-        "side_flow": side_flow(problem, state),
+        "side_flow": side_flow(state),
         "min_film_thickness": thinnest,
     }  # fmt: skip
     if status is SolveStatus.CONVERGED:
@@ -225,6 +226,7 @@ def operating_point(
         coefficient_frequency_ratio=frequency_ratio,
         frequency_coefficients=frequency_coefficients(dynamics, case.film.frequency_ratios),
         moment=turn @ journal_moment(state),
+        supply_flow=tuple(float(demand) for demand in supply_flow(state, flow)),
         coefficients_full=(
             full_coefficients(solution, turn, frequency_ratio, rotations=case.film.rotations)
             if case.film.rotations or dynamics.has_pads
@@ -286,11 +288,11 @@ def _ratio(above: float, below: float) -> float:
     return above / below if below > 0.0 else math.inf
 
 
-def liquid_fraction(solution: FilmSolution) -> Array:
-    """What the oil fills of each cell, (n, m)."""
+def solved_flow(solution: FilmSolution) -> FilmFlow:
+    """Return the fluxes and liquid fractions of a solved film."""
     if solution.thermal is not None:
-        return solution.thermal.energy.flow.liquid_fraction
-    return film_flow(solution.state, solution.problem.surface_speed).liquid_fraction
+        return solution.thermal.energy.flow
+    return film_flow(solution.state, solution.problem.surface_speed)
 
 
 def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float]:

@@ -6,19 +6,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import RupturedFriction
+from .flow import FilmFlow
+from .flow_law import POISEUILLE_POWER
 from .geometry import CENTER, rotations
-from .problem import FilmProblem, FilmState
+from .operator import NORTH, SOUTH, WEST
+from .problem import FilmState
 
 Array = NDArray[np.float64]
 
+DEFAULT_END_LAND = 0.01
+"""Over the bearing's length: land at an end of a groove that is not sealed."""
 
-def friction_force(problem: FilmProblem, state: FilmState, fraction: Array) -> float:
+
+def friction_force(state: FilmState, fraction: Array) -> float:
     """Friction on the shaft [N]: tau = h p' (1 - G) + U/(h F_0) on the journal's surface.
 
     With ``liquid`` friction and an isothermal or thermal film, force times U is the power that the
     film dissipates, to rounding.
     """
-    operator = state.operator
+    problem, operator = state.problem, state.operator
     if problem.settings.ruptured_friction is RupturedFriction.WHOLE:
         fraction = np.ones_like(fraction)
     pressure = state.solution.pressure
@@ -48,15 +54,79 @@ def journal_moment(state: FilmState) -> Array:
     return np.tensordot(shapes, state.solution.pressure * state.operator.area, axes=2)
 
 
-def side_flow(problem: FilmProblem, state: FilmState) -> float:
-    """Oil out of both ends [m3/s]."""
-    conductance = state.operator.conductance
+def side_flow(state: FilmState) -> float:
+    """Oil out of both ends of the film and of its grooves [m3/s]."""
+    conductance, mesh = state.operator.conductance, state.problem.mesh
     pressure = state.solution.pressure
     film = ~state.operator.fixed
-    out = np.sum((conductance[3] * pressure * film)[:, -1])
-    if not problem.mesh.half:
-        out += np.sum((conductance[2] * pressure * film)[:, 0])
-    return float(problem.mesh.multiplicity * out)
+    out = np.sum((conductance[NORTH] * pressure * film)[:, -1])
+    if not mesh.half:
+        out += np.sum((conductance[SOUTH] * pressure * film)[:, 0])
+    return float(mesh.multiplicity * out + end_leakage(state).sum())
+
+
+def end_leakage(state: FilmState) -> Array:
+    """Oil that leaks out of both ends of each groove whose ends are not sealed [m3/s]."""
+    problem = state.problem
+    bearing, mesh = problem.bearing, problem.mesh
+    leakage = np.zeros(len(bearing.grooves))
+    for number, groove in enumerate(bearing.grooves):
+        if groove.sealed_ends:
+            continue
+        temperature = groove.supply_temperature or problem.thermal.supply_temperature
+        viscosity = float(problem.lubricant.viscosity(temperature))
+        land = groove.end_land or DEFAULT_END_LAND * bearing.length
+        for column, face in ((0, SOUTH), (-1, NORTH)):
+            if column == 0 and mesh.half:
+                continue
+            cells = mesh.supply[:, column] == number
+            h = np.maximum(state.thickness[1 + face, cells, column], 0.0)
+            flow = h**POISEUILLE_POWER / (12.0 * viscosity) * groove.supply_pressure / land
+            leakage[number] += mesh.multiplicity * float(np.sum(flow * mesh.dx[cells]))
+    return leakage
+
+
+def supply_flow(state: FilmState, flow: FilmFlow) -> Array:
+    """Oil that each groove must be given [m3/s]: what leaves it less what arrives from the film.
+
+    Oil that the rupture condition makes where a film forms again (all but the mass-conserving one
+    do) has not arrived from anywhere: the next groove gives it. The sum is thus the side flow.
+    """
+    mesh = state.problem.mesh
+    film, supply = ~state.operator.fixed, mesh.supply
+    demand = np.zeros(len(state.problem.bearing.grooves))
+    if not demand.size:
+        return demand
+    for face, (shift, axis) in enumerate(((1, 0), (-1, 0), (1, 1), (-1, 1))):
+        outward = flow.flux[face] if face in (WEST, SOUTH) else -flow.flux[face]
+        behind = np.where(film, np.roll(supply, shift, axis=axis), -1)
+        if axis == 1:
+            behind[:, 0 if shift == 1 else -1] = -1
+        for number in range(demand.size):
+            demand[number] += outward[behind == number].sum()
+    np.add.at(demand, _next_groove(supply), _made_oil(state, flow))
+    return mesh.multiplicity * demand + end_leakage(state)
+
+
+def _made_oil(state: FilmState, flow: FilmFlow) -> Array:
+    """Oil that the rupture condition makes in each column and at its first face [m3/s], (n,)."""
+    west, east, south, north = flow.flux
+    interior, film = state.operator.interior, ~state.operator.fixed
+    made = np.where(film, east - west + north - south, 0.0)
+    made += np.where(interior[WEST], west - np.roll(east, 1, axis=0), 0.0)
+    made[:, 1:] += np.where(interior[SOUTH, :, 1:], south[:, 1:] - north[:, :-1], 0.0)
+    return made.sum(axis=1)
+
+
+def _next_groove(supply: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Number of the groove that each column's film meets first, (n,)."""
+    here = supply.max(axis=1)
+    ahead = np.empty_like(here)
+    number = here[here >= 0][0]
+    for i in range(here.size - 1, -1, -1):
+        number = here[i] if here[i] >= 0 else number
+        ahead[i] = number
+    return ahead
 
 
 def peak(field: Array, half: bool) -> float:

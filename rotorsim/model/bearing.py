@@ -38,6 +38,12 @@ class Groove:
         Gauge pressure held in the groove [Pa].
     supply_temperature : float or None
         Temperature of the oil supplied [K]; None: the scenario's supply temperature.
+    sealed_ends : bool
+        Whether plugs close the ends of a groove that runs the bearing's whole length. If not, oil
+        leaks over `end_land` at each end, through the clearance; the groove's pressure holds.
+    end_land : float or None
+        Axial length over which the pressure falls at an end that is not sealed [m]; None: 1 % of
+        the bearing's length.
     """
 
     center: float
@@ -45,6 +51,8 @@ class Groove:
     length: float | None = None
     supply_pressure: float = 0.0
     supply_temperature: float | None = None
+    sealed_ends: bool = True
+    end_land: float | None = None
 
     def __post_init__(self) -> None:
         _require(math.isfinite(self.center), "must be finite", "groove.center", self.center)
@@ -71,6 +79,19 @@ class Groove:
             "must be above absolute zero",
             "groove.supply_temperature",
             self.supply_temperature,
+        )
+        _require(
+            self.sealed_ends or self.length is None,
+            "a groove of part of the length ends inside the film, which seals it: leave this out, "
+            "or leave out the length",
+            "groove.sealed_ends",
+            self.sealed_ends,
+        )
+        _require(
+            self.end_land is None or (not self.sealed_ends and self.end_land > 0.0),
+            "must be above 0, and goes with sealed_ends = false",
+            "groove.end_land",
+            self.end_land,
         )
 
 

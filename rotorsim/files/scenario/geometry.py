@@ -87,6 +87,8 @@ def bearing_grooves(table: BearingTable) -> tuple[Groove, ...]:
                     entry.length,
                     entry.supply_pressure,
                     entry.supply_temperature,
+                    entry.sealed_ends,
+                    entry.end_land,
                 )
             )
         except InputError as error:

@@ -69,6 +69,8 @@ class GrooveTable(Table):
     length: Length | None = None
     supply_pressure: Annotated[float, quantity("pressure", "70 kPa", "not_negative")] = 0.0
     supply_temperature: Temperature | None = None
+    sealed_ends: bool = True
+    end_land: Length | None = None
 
 
 class ArcTable(Table):
