@@ -68,15 +68,17 @@ def pad_case(
     length: float = LENGTH,
     clearance: float = CLEARANCE,
     viscosity: float = VISCOSITY,
+    thinning: float = 0.0,
+    thermal: ThermalSettings | None = None,
 ) -> Case:
-    """Isoviscous bearing; `target` is an eccentricity ratio or a load."""
+    """Isoviscous bearing unless told otherwise; `target` is an eccentricity ratio or a load."""
     grooves = tuple(
         Groove(middle, extent, supply_pressure=supply_pressure) for middle, extent in gaps(pads)
     )
     return Case(
         bearing=Bearing(radius, length, clearance, pads=pads, grooves=grooves, tilt=tilt),
-        lubricant=Lubricant(ExponentialViscosity(viscosity, 313.15, 0.0), 860.0, 2000.0, 0.13),
+        lubricant=Lubricant(ExponentialViscosity(viscosity, 313.15, thinning), 860.0, 2000.0, 0.13),
         film=FilmSettings(cavitation=Cavitation(cavitation), mesh=MeshSize(*mesh, 8, 4)),
-        thermal=ThermalSettings(model=ThermalModel.ISOTHERMAL),
+        thermal=thermal or ThermalSettings(model=ThermalModel.ISOTHERMAL),
         target=EccentricityTarget(target) if isinstance(target, float) else target,
     )

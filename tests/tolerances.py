@@ -25,6 +25,14 @@ LUND_THOMSEN_ATTITUDE_DEG = 0.5
 OCVIRK = 0.004
 """The short-bearing theory's own error at L/D = 0.02, and at 0.05 up to eps = 0.5."""
 
+SOMEYA_SOMMERFELD, SOMEYA_STIFFNESS, SOMEYA_DAMPING = 0.05, 0.06, 0.05
+"""Four pads without preload, three digits of a coarse mesh; ours change by 0.8 % at most on
+a mesh twice as fine."""
+CROSS_CODE_PADS = {"rigid": (0.04, 0.01), "spring": (0.03, 0.03)}
+"""K and B; the other program's mesh of 20 x 10 elements is good for 3 % of the stiffness."""
+FILLON_KELVIN = 6.0
+"""Pads and clearance that do not deform, against a theory in which they do."""
+
 SECOND_METHOD = 0.001
 """Between the film solver and bilinear finite elements, both extrapolated or on fine meshes."""
 SECOND_METHOD_COEFFICIENTS = 0.005

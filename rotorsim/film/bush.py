@@ -1,4 +1,4 @@
-"""Heat conduction in the bush, in r, theta and y (Dal Eq. 16 and its boundary conditions).
+"""Heat conduction in the bush or a pad, in r, theta and y (Dal Eq. 16, its boundary conditions).
 
 The operator is constant over a sweep and separable: eigenvectors around (theta) and along (y) leave
 one tridiagonal system in r for each pair of modes. Solved once, they give the map from the heat
@@ -19,12 +19,12 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class BushOperator:
-    """Finite volumes of the bush, diagonalised around and along.
+    """Finite volumes of the bush or of one pad, diagonalised around and along.
 
     Attributes
     ----------
     around : (n, n) array
-        Eigenvectors of the ring's Laplacian, orthonormal in its cell lengths.
+        Eigenvectors of the Laplacian around, orthonormal in its cell lengths.
     along : (m, m) array
         Eigenvectors of the axial Laplacian with convection at the ends, likewise.
     lengths : tuple of arrays
@@ -72,13 +72,14 @@ def bush_operator(
     *,
     outer_transfer: float,
     end_transfer: tuple[float, float],
+    edge_transfer: float | None = None,
 ) -> BushOperator:
-    """Build the operator.
+    """Build the operator of a ring, or of a pad.
 
     Parameters
     ----------
     theta_faces : (n + 1,) array
-        [rad], one turn.
+        [rad], one turn; or from edge to edge of a pad.
     y_faces : (m + 1,) array
         [m]
     radii : tuple of float
@@ -91,10 +92,16 @@ def bush_operator(
         Heat transfer to the surroundings on the outer surface [W/(m2 K)].
     end_transfer : tuple of float
         On the first and the last end; 0 for a plane of symmetry.
+    edge_transfer : float, optional
+        On a pad's leading and trailing edge [W/(m2 K)], at its mean radius; None: a ring.
     """
     dtheta, dy = np.diff(theta_faces), np.diff(y_faces)
-    around_values, around = _ring_modes(dtheta)
-    along_values, along = _axial_modes(dy, conductivity, end_transfer)
+    if edge_transfer is None:
+        around_values, around = _ring_modes(dtheta)
+    else:
+        edge = 0.5 * (radii[0] + radii[1]) * edge_transfer
+        around_values, around = _open_modes(dtheta, conductivity, (edge, edge))
+    along_values, along = _open_modes(dy, conductivity, end_transfer)
     r_faces = np.linspace(radii[0], radii[1], layers + 1)
     r, dr = 0.5 * (r_faces[1:] + r_faces[:-1]), np.diff(r_faces)
     links = conductivity * r_faces[1:-1] / (r[1:] - r[:-1])
@@ -127,9 +134,10 @@ def _ring_modes(dtheta: Array) -> tuple[Array, Array]:
     return _weighted_modes(matrix, dtheta)
 
 
-def _axial_modes(
+def _open_modes(
     dy: Array, conductivity: float, end_transfer: tuple[float, float]
 ) -> tuple[Array, Array]:
+    """Modes between two ends with convection."""
     m = dy.size
     matrix = np.zeros((m, m))
     for j in range(m - 1):
@@ -169,7 +177,7 @@ def _first_column(diagonal: Array, links: Array) -> Array:
     return column
 
 
-@lru_cache(maxsize=8)
+@lru_cache(maxsize=16)
 def kept_operator(
     theta_faces: bytes,
     y_faces: bytes,
@@ -178,6 +186,7 @@ def kept_operator(
     conductivity: float,
     outer_transfer: float,
     end_transfer: tuple[float, float],
+    edge_transfer: float | None = None,
 ) -> BushOperator:
     """Return `bush_operator` of hashable arguments, one of the last few if it is the same."""
     return bush_operator(
@@ -188,4 +197,5 @@ def kept_operator(
         conductivity,
         outer_transfer=outer_transfer,
         end_transfer=end_transfer,
+        edge_transfer=edge_transfer,
     )

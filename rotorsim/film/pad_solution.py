@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Case, ThermalModel
+from ..model import Case
 from ..status import SolveStatus
 from .banded import NoFilmError
-from .layers import LayerIntegrals, isoviscous_layers
+from .heat import Heat
+from .layers import LayerIntegrals, isoviscous_layers, layer_integrals
 from .pads import PadSearch
-from .problem import FilmState, film_problem, film_state
+from .problem import FilmProblem, FilmState, film_problem, film_state
 from .solution import FilmSolution, WarmStart
 from .thd import ThermalFilm, solve_thermal_film, uniform_heat
 
@@ -56,15 +57,26 @@ def solve_pads(case: Case, speed: float, *, initial: WarmStart | None = None) ->
             "the forces along the pivots cannot add up to the load's direction: a pivot must stand "
             "on either side of it, less than 180 deg apart, or in its line"
         )
-    supply = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    layers = isoviscous_layers(problem.mesh.shape, supply)
-    q = search.first_guess()
+    q, heat = search.first_guess(), None
     if initial is not None and initial.pads is not None and initial.pads.size == q.size - 2:
-        q = np.array([*initial.position, *initial.pads])
-    film = _isothermal(search, q, layers)
-    if case.thermal.model is ThermalModel.ISOTHERMAL or not film.converged:
-        return _conclude(search, film, None)
-    return _conclude(search, film, _thermal(search, film))
+        q, heat = np.array([*initial.position, *initial.pads]), initial.heat
+    if problem.is_thermal and heat is not None and heat.temperature.shape == _heat_shape(problem):
+        thermal = _thermal(search, search.settle(q, _warm_layers(problem, heat)), heat)
+        return _conclude(search, thermal.state, thermal, None)
+    supply = float(case.lubricant.viscosity(case.thermal.supply_temperature))
+    cold = _isothermal(search, q, isoviscous_layers(problem.mesh.shape, supply))
+    if not problem.is_thermal or not cold.converged:
+        return _conclude(search, cold.state, None, cold)
+    thermal = _thermal(search, cold.state.displacement, uniform_heat(problem))
+    return _conclude(search, thermal.state, thermal, cold)
+
+
+def _heat_shape(problem: FilmProblem) -> tuple[int, int, int]:
+    return (*problem.mesh.shape, problem.settings.mesh.cross_film)
+
+
+def _warm_layers(problem: FilmProblem, heat: Heat) -> LayerIntegrals:
+    return layer_integrals(problem.lubricant.law.viscosity(heat.temperature))
 
 
 def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
@@ -98,21 +110,35 @@ def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
         q = following
 
 
-def _thermal(search: PadSearch, cold: _Cold) -> ThermalFilm:
-    return solve_thermal_film(
-        search.problem,
-        cold.state.displacement,
-        initial=uniform_heat(search.problem),
-        move=search,
-        force_tolerance=THERMAL_FORCE_TOLERANCE,
-    )
+def _thermal(search: PadSearch, q: Array, heat: Heat) -> ThermalFilm:
+    """Temperatures and equilibrium together, again where other pads turn out to be unloaded."""
+    iterations, revisions = 0, 0
+    while True:
+        film = solve_thermal_film(
+            search.problem, q, initial=heat, move=search, force_tolerance=THERMAL_FORCE_TOLERANCE
+        )
+        iterations, revisions = iterations + film.iterations, revisions + 1
+        film = replace(film, iterations=iterations)
+        before, q, heat = search.unloaded, film.state.displacement, film.heat
+        sure = film.converged and not (search.changed(q) or search.needs_sampling(q))
+        if sure or film.out_of_range or revisions == MAX_REVISIONS:
+            return film
+        q = search.settle(q, _warm_layers(search.whole, heat))
+        if search.unloaded == before and film.converged:
+            return film
 
 
-def _conclude(search: PadSearch, cold: _Cold, thermal: ThermalFilm | None) -> FilmSolution:
+def _conclude(
+    search: PadSearch, state: FilmState, thermal: ThermalFilm | None, cold: _Cold | None
+) -> FilmSolution:
     """Map the last iterate to a status."""
-    state = cold.state if thermal is None else thermal.state
-    converged = cold.converged if thermal is None else thermal.converged
-    residual = cold.off if thermal is None else thermal.residual
+    converged, residual, cause, iterations, unreachable = True, 0.0, "", 0, False
+    if cold is not None:
+        converged, residual, iterations = cold.converged, cold.off, cold.steps
+        cause, unreachable = f"the forces are off by {cold.off:.1e} of the load", cold.unreachable
+    if thermal is not None:
+        converged, residual, cause = thermal.converged, thermal.residual, thermal.cause
+        iterations += thermal.iterations
     status, message = SolveStatus.CONVERGED, ""
     if len(search.unloaded) == len(search.frames):
         status = SolveStatus.NO_EQUILIBRIUM
@@ -120,7 +146,7 @@ def _conclude(search: PadSearch, cold: _Cold, thermal: ThermalFilm | None) -> Fi
     elif thermal is not None and thermal.out_of_range:
         status = SolveStatus.OUT_OF_RANGE
         message = "the film's temperature left the range in which an oil's law means anything"
-    elif cold.unreachable:
+    elif unreachable:
         status = SolveStatus.NO_EQUILIBRIUM
         message = (
             "no journal position off the pads carries the load: the film carries "
@@ -129,9 +155,8 @@ def _conclude(search: PadSearch, cold: _Cold, thermal: ThermalFilm | None) -> Fi
         )
     elif not converged:
         status = SolveStatus.NOT_CONVERGED
-        cause = thermal.cause if thermal else f"the forces are off by {cold.off:.1e} of the load"
         message = (
-            f"stopped after {cold.steps} iterations: {cause}; the numbers are the last iterate"
+            f"stopped after {iterations} iterations: {cause}; the numbers are the last iterate"
         )
     return FilmSolution(
         problem=search.problem,
@@ -140,7 +165,7 @@ def _conclude(search: PadSearch, cold: _Cold, thermal: ThermalFilm | None) -> Fi
         frame=0.0,
         status=status,
         message=message,
-        iterations=cold.steps + (thermal.iterations if thermal else 0),
+        iterations=iterations,
         residual=residual,
         unloaded=search.unloaded,
     )

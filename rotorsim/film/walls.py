@@ -176,22 +176,90 @@ class ConductingBush(Wall):
         return cls(thermal.supply_temperature, operator, thermal.ambient_temperature)
 
     def respond(self, temperature: Array, contact: FilmContact, /) -> Array:
-        """Return the bore's temperature that answers the film's heat at the old one.
-
-        The film is taken to answer a change of the bore with a uniform conductance (a Robin
-        condition): handing over the flux itself would not converge, since the surroundings take
-        far less heat per degree than the film brings.
-        """
-        conductance = float(self.exchange(contact).sum()) / float(contact.area.sum())
-        if not conductance > 0.0:
-            return temperature
+        """Return the bore's temperature that answers the film's heat at the old one."""
         flux = self.heat(temperature, contact) / contact.area
-        reference = temperature - self.ambient + flux / conductance
-        return self.ambient + self.operator.robin_rise(reference, conductance)
+        conductance = float(self.exchange(contact).sum()) / float(contact.area.sum())
+        return _conducted(self.operator, temperature, flux, conductance, self.ambient)
 
     def exchange(self, contact: FilmContact, /) -> Array:
         """Return a developing film's few times k A/h of every cell, as for the shaft."""
         return 4.0 * contact.bulk
+
+
+@dataclass(frozen=True)
+class ConductingPads(Wall):
+    """Pads that conduct to surroundings at `ambient` [K] behind, beside and before them.
+
+    Attributes
+    ----------
+    columns : tuple of (n,) bool arrays
+        Cells of each pad.
+    operators : tuple of BushOperator
+    """
+
+    columns: tuple[NDArray[np.bool_], ...]
+    operators: tuple[BushOperator, ...]
+    ambient: float
+
+    @classmethod
+    def of(cls, problem: FilmProblem) -> ConductingPads:
+        """Build the pads of a film problem; the operators of recent meshes are kept."""
+        mesh, thermal, bearing = problem.mesh, problem.thermal, problem.bearing
+        transfer, columns, operators = thermal.bush_heat_transfer, [], []
+        for number, pad in enumerate(bearing.pads):
+            own = mesh.region == number
+            first = int(np.flatnonzero(own)[0])
+            faces = mesh.theta_faces[first : first + int(own.sum()) + 1]
+            columns.append(own)
+            operators.append(
+                kept_operator(
+                    np.round(faces - faces[0], 12).tobytes(),
+                    mesh.y_faces.tobytes(),
+                    (bearing.journal_radius, bearing.journal_radius + pad.thickness),
+                    problem.settings.mesh.bush_radial,
+                    thermal.bush_conductivity,
+                    transfer,
+                    (0.0 if mesh.half else transfer, transfer),
+                    transfer,
+                )
+            )
+        first_guess = thermal.supply_temperature
+        return cls(first_guess, tuple(columns), tuple(operators), thermal.ambient_temperature)
+
+    def respond(self, temperature: Array, contact: FilmContact, /) -> Array:
+        """Return the pads' surface temperature that answers the film's heat at the old one."""
+        flux, exchange = self.heat(temperature, contact) / contact.area, self.exchange(contact)
+        result = temperature.copy()
+        for own, operator in zip(self.columns, self.operators, strict=True):
+            conductance = float(exchange[own].sum()) / float(contact.area[own].sum())
+            result[own] = _conducted(
+                operator, temperature[own], flux[own], conductance, self.ambient
+            )
+        return result
+
+    def exchange(self, contact: FilmContact, /) -> Array:
+        """Return 2 k A/h of every cell."""
+        return 2.0 * contact.bulk
+
+
+def _conducted(
+    operator: BushOperator, temperature: Array, flux: Array, conductance: float, ambient: float
+) -> Array:
+    """Surface temperature [K] of a solid that answers the film's heat flux at the old one.
+
+    The film is taken to answer a change of the surface with a uniform conductance (a Robin
+    condition): handing over the flux itself would not converge, since the surroundings take far
+    less heat per degree than the film brings.
+    """
+    if not conductance > 0.0:
+        return temperature
+    reference = temperature - ambient + flux / conductance
+    return ambient + operator.robin_rise(reference, conductance)
+
+
+def _conducting(problem: FilmProblem) -> Wall:
+    pads = problem.bearing.pads
+    return ConductingPads.of(problem) if pads else ConductingBush.of(problem)
 
 
 @dataclass(frozen=True)
@@ -205,7 +273,7 @@ class Walls:
 _BUSHES: dict[BushModel, Callable[[FilmProblem], Wall]] = {
     BushModel.AMBIENT: lambda problem: FixedWall(problem.thermal.ambient_temperature),
     BushModel.INSULATED: lambda problem: InsulatedWall(problem.thermal.supply_temperature),
-    BushModel.CONDUCTION: ConductingBush.of,
+    BushModel.CONDUCTION: _conducting,
 }
 _SHAFTS: dict[ShaftModel, Callable[[FilmProblem], Wall]] = {
     ShaftModel.AMBIENT: lambda problem: FixedWall(problem.thermal.ambient_temperature),

@@ -1,4 +1,4 @@
-"""Conduction in the bush against exact three-dimensional solutions: second order.
+"""Conduction in the bush and in pads against exact three-dimensional solutions: second order.
 
 T = [a I_n(s r) + b K_n(s r)] cos(n theta) cos(s y) solves Laplace's equation; s and b/a follow from
 convection at the end and on the outer surface.
@@ -24,8 +24,13 @@ def _uneven(count: int) -> np.ndarray:
     return even + 0.3 * np.sin(even)
 
 
-def solve(around: int, transfer: float, conductivity: float, level: int):
-    """Largest errors of the bore and of the field, relative to the bore's largest value."""
+def solve(
+    around: float, transfer: float, conductivity: float, level: int, edge: float | None = None
+):
+    """Largest errors of the bore and of the field, relative to the bore's largest value.
+
+    `edge`: half the angle of a pad; `around` then fits convection at its edges.
+    """
     half = 0.5 * LENGTH
     wave = brentq(
         lambda s: s * math.tan(s * half) - transfer / conductivity, 1e-9, 0.4999 * math.pi / half
@@ -42,6 +47,8 @@ def solve(around: int, transfer: float, conductivity: float, level: int):
 
     slope = wave * (ivp(around, wave * r1) + share * kvp(around, wave * r1))
     theta_faces, layers = _uneven(16 * 2**level), 4 * 2**level
+    if edge is not None:
+        theta_faces = edge / math.pi * theta_faces
     y_faces = np.linspace(0.0, half, 4 * 2**level + 1)
     theta = 0.5 * (theta_faces[1:] + theta_faces[:-1])
     y = 0.5 * (y_faces[1:] + y_faces[:-1])
@@ -49,6 +56,7 @@ def solve(around: int, transfer: float, conductivity: float, level: int):
     operator = bush_operator(
         theta_faces, y_faces, RADII, layers, conductivity,
         outer_transfer=transfer, end_transfer=(0.0, transfer),
+        edge_transfer=None if edge is None else transfer,
     )  # fmt: skip
     flux = -conductivity * slope * pattern
     scale = abs(rise(r1))
@@ -63,6 +71,17 @@ def solve(around: int, transfer: float, conductivity: float, level: int):
 @pytest.mark.parametrize(("transfer", "conductivity"), [(80.0, 250.0), (5000.0, 40.0)])
 def test_bush_is_second_order(around, transfer, conductivity):
     errors = [solve(around, transfer, conductivity, level) for level in range(4)]
+    for coarse, fine in zip(errors[-2], errors[-1], strict=True):
+        assert math.log2(coarse / fine) == pytest.approx(2.0, abs=ORDER)
+    assert max(errors[-1]) < 5e-3
+
+
+@pytest.mark.parametrize(("transfer", "conductivity"), [(80.0, 250.0), (5000.0, 40.0)])
+def test_pad_is_second_order(transfer, conductivity):
+    edge = math.radians(30.0)
+    at_edge = transfer * 0.5 * sum(RADII) / conductivity
+    around = brentq(lambda n: n * math.tan(n * edge) - at_edge, 1e-9, 0.4999 * math.pi / edge)
+    errors = [solve(around, transfer, conductivity, level, edge) for level in range(4)]
     for coarse, fine in zip(errors[-2], errors[-1], strict=True):
         assert math.log2(coarse / fine) == pytest.approx(2.0, abs=ORDER)
     assert max(errors[-1]) < 5e-3

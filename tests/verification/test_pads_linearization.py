@@ -25,7 +25,7 @@ from rotorsim.film.geometry import film_geometry, pad_unknowns
 from rotorsim.film.linearization import linearize
 from rotorsim.film.pad_solution import solve_pads
 from rotorsim.film.problem import film_problem, film_state
-from rotorsim.model import Arc, Bearing, LoadTarget, Pad, SpherePivot, SpringPivot
+from rotorsim.model import Arc, Bearing, LoadTarget, Pad, SpherePivot, SpringPivot, ThermalSettings
 from rotorsim.status import SolveStatus, Stability
 
 LOAD = LoadTarget(4000.0)
@@ -86,6 +86,15 @@ BEARINGS = {
     ),
     "four on pad, off centre": pad_case(
         equal_pads(4, first_deg=7.0, arc_deg=72.0, offset=0.55, preload=0.2), LOAD
+    ),
+    "thermal": pad_case(
+        equal_pads(4, first_deg=45.0, arc_deg=75.0),
+        LOAD,
+        mesh=(64, 8),
+        thinning=0.03,
+        thermal=ThermalSettings(
+            inlet="mixing", shaft="insulated", bush="conduction", bush_conductivity=50.0
+        ),
     ),
     "mass-conserving": pad_case(equal_pads(), LOAD, cavitation="jfo"),
 }
