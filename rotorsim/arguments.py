@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import Any
 
 from .errors import InputError
 
@@ -30,20 +31,38 @@ def refuse_path(value: object, key: str = "scenario") -> None:
         )
 
 
-def check_number(value: object, key: str, unit: str) -> None:
-    """Refuse a text, "15000 rpm" for example, where a plain number in SI is needed.
+def finite_number(value: Any, key: str, unit: str = "") -> float:
+    """Return a finite number as a float; refuse text with a unit, None, arrays and the like.
+
+    Parameters
+    ----------
+    value : object
+    key : str
+        Name of the argument, for messages.
+    unit : str
+        SI unit that is meant, for messages.
 
     Raises
     ------
     InputError
-        `value` is no number.
+        `value` is no number, or not finite.
     """
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__float__"):
+    try:
+        if isinstance(value, (str, bytes, bool)) or getattr(value, "ndim", 0):
+            raise TypeError
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    except (TypeError, ValueError):  # of Pint, xarray and others as well
+        of_unit = f" in {unit}" if unit else ""
         raise InputError(
-            f"must be a plain number in {unit}, without quotes{_HOW.get(unit, '')}",
+            f"must be a plain number{of_unit}, without quotes{_HOW.get(unit, '')}",
             key=key,
-            value=value if isinstance(value, (str, bytes)) else type(value).__name__,
-        )
+            value=value if isinstance(value, (str, bytes, bool)) else type(value).__name__,
+        ) from None
+    if not math.isfinite(number):
+        raise InputError("must be a finite number", key=key, value=number)
+    return number
 
 
 def above_zero(prefix: str, **values: float) -> None:

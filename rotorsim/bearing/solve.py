@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import check_number, refuse_path
+from ..arguments import finite_number, refuse_path
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import FilmFlow, film_flow
@@ -77,7 +77,7 @@ def solve(
         ("radial_clearance", radial_clearance, "m"),
     ):
         if value is not None:
-            check_number(value, name, unit)
+            finite_number(value, name, unit)
     models = tuple(str(m) for m in scenario.thermal_models)
     case = scenario.case(
         _only("radial_clearance", radial_clearance, scenario.radial_clearances),
@@ -128,7 +128,7 @@ def solve_case(
     InputError
         The speed is not positive, or the mesh cannot hold the geometry.
     """
-    check_number(speed, "speed", "rad/s")
+    finite_number(speed, "speed", "rad/s")
     if not (math.isfinite(speed) and speed > 0.0):
         raise InputError("must be above 0 (rad/s)", key="speed", value=speed)
     try:

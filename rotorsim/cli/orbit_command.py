@@ -116,7 +116,7 @@ def _coefficients(
     output: Output, loaded: Scenario, scenario: Path, table: Path | None, workers: int | None
 ) -> CoefficientTable | None:
     """Table for linear coefficients; a nonlinear film needs none."""
-    from ..files.scenario import OrbitForce
+    from ..model.orbit import OrbitForce
     from ..study.provenance import differences
 
     if loaded.orbit is not None and loaded.orbit.force is not OrbitForce.LINEAR:

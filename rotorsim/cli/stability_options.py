@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,7 +14,8 @@ from ..errors import InputError
 from .options import file_or_shipped
 
 if TYPE_CHECKING:
-    from ..files.scenario import Scenario, ToleranceSettings
+    from ..files.scenario import Scenario
+    from ..model.tolerances import ToleranceSettings
     from ..rotor import Rotor
 
 _ROTOR, _MAP, _TOLERANCES = "Rotor", "Map over two inputs", "Tolerances"
@@ -336,10 +337,9 @@ def wanted_tolerances(
     """The scenario's tolerances with those of the options."""
     from dataclasses import replace
 
-    from ..files.scenario import ToleranceSettings
-    from ..files.scenario.tolerances import KINDS, parse_spread
+    from ..model.tolerances import KINDS, ToleranceSettings, parse_spread
 
-    found = dict(scenario.tolerances.spreads) if scenario.tolerances is not None else {}
+    found: dict[str, Any] = {}
     for text in texts or ():
         name, sign, value = (part.strip() for part in text.partition("="))
         name = name.replace("-", "_")
@@ -354,11 +354,11 @@ def wanted_tolerances(
             found[name] = parse_spread(value, name)
         except InputError as error:
             raise InputError(error.message, key=f"--tolerance {name}", value=value) from None
-    if not found:
+    if not found and scenario.tolerances is None:
         raise InputError(
             'needs tolerances: --tolerance "radial_clearance=5 um", or a section [tolerances] in '
             "the scenario",
             key="--tolerances",
         )
-    base = scenario.tolerances or ToleranceSettings(found)
-    return replace(base, spreads=found, samples=samples or base.samples)
+    base = scenario.tolerances or ToleranceSettings(**found)
+    return replace(base, **found, samples=samples or base.samples)

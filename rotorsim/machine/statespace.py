@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import control
 import numpy as np
 
-from ..arguments import check_number
+from ..arguments import finite_number
 from ..errors import InputError
 from ..rotor import Rotor
 from .machine import Machine
@@ -52,10 +52,10 @@ def state_space(
         The mass or the speed is missing or no number, or massless nodes are not damped.
     """
     if not isinstance(plant, Machine):
-        check_number(mass, "mass", "kg")
+        finite_number(mass, "mass", "kg")
         film = ConstantSupport(plant.stiffness, plant.damping)
         plant, speed = Machine(Rotor.rigid(float(mass or 0.0)), [(0, film)]), plant.speed
-    check_number(speed, "speed", "rad/s")
+    finite_number(speed, "speed", "rad/s")
     matrices = plant.matrices(float(speed or 0.0))
     if not np.all(np.isfinite(matrices[2])):
         raise InputError("a support has no coefficients here", key="speed", value=speed)

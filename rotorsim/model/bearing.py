@@ -3,12 +3,28 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from .entries import (
+    NOT_IN_FILES,
+    SEVERAL,
+    Angle,
+    Clearance,
+    Example,
+    Key,
+    Length,
+    Number,
+    Quantity,
+    Slope,
+    Temperature,
+    check,
+)
 from .pads import FULL_TURN, Pad, check_order, gaps
 
 
@@ -20,6 +36,20 @@ def angle_between(theta: ArrayLike, other: float) -> NDArray[np.float64]:
 def _require(condition: bool, message: str, key: str, value: object) -> None:
     if not condition:
         raise InputError(message, key=key, value=value)
+
+
+Preload = Annotated[
+    float, Number(least=0.0, below=1.0, hint="it lies from 0 to below 1, for example 0.5")
+]
+Offset = Annotated[float, Number(least=0.0, most=1.0, hint="it lies from 0 to 1, for example 0.5")]
+
+
+class BearingProfile(StrEnum):
+    """Usual multi-lobe bores."""
+
+    ELLIPTICAL = "elliptical"
+    THREE_LOBE = "three_lobe"
+    OFFSET_HALVES = "offset_halves"
 
 
 @dataclass(frozen=True)
@@ -46,40 +76,20 @@ class Groove:
         the bearing's length.
     """
 
-    center: float
-    extent: float
-    length: float | None = None
-    supply_pressure: float = 0.0
-    supply_temperature: float | None = None
+    center: Angle
+    extent: Annotated[float, Quantity("angle", "20 deg")]
+    length: Length | None = None
+    supply_pressure: Annotated[float, Quantity("pressure", "70 kPa", "not_negative")] = 0.0
+    supply_temperature: Temperature | None = None
     sealed_ends: bool = True
-    end_land: float | None = None
+    end_land: Length | None = None
 
     def __post_init__(self) -> None:
-        _require(math.isfinite(self.center), "must be finite", "groove.center", self.center)
+        check(self, "groove")
         _require(
-            0.0 < self.extent < FULL_TURN,
-            "must be above 0 and below 360 deg",
-            "groove.extent",
+            self.extent < FULL_TURN, "must be above 0 and below 360 deg", "groove.extent",
             self.extent,
-        )
-        _require(
-            self.length is None or self.length > 0.0,
-            "must be above 0",
-            "groove.length",
-            self.length,
-        )
-        _require(
-            math.isfinite(self.supply_pressure) and self.supply_pressure >= 0.0,
-            "must be 0 or more (gauge pressure)",
-            "groove.supply_pressure",
-            self.supply_pressure,
-        )
-        _require(
-            self.supply_temperature is None or self.supply_temperature > 0.0,
-            "must be above absolute zero",
-            "groove.supply_temperature",
-            self.supply_temperature,
-        )
+        )  # fmt: skip
         _require(
             self.sealed_ends or self.length is None,
             "a groove of part of the length ends inside the film, which seals it: leave this out, "
@@ -88,8 +98,8 @@ class Groove:
             self.sealed_ends,
         )
         _require(
-            self.end_land is None or (not self.sealed_ends and self.end_land > 0.0),
-            "must be above 0, and goes with sealed_ends = false",
+            self.end_land is None or not self.sealed_ends,
+            "goes with sealed_ends = false",
             "groove.end_land",
             self.end_land,
         )
@@ -113,25 +123,45 @@ class Arc:
         Where along the arc the lobe comes nearest, 0 to 1; 0.5 for a symmetric lobe.
     """
 
-    start: float
-    end: float
-    preload: float = 0.0
-    offset: float = 0.5
+    start: Annotated[Angle, Example("-90 deg")]
+    end: Angle
+    preload: Preload = 0.0
+    offset: Offset = 0.5
 
     def __post_init__(self) -> None:
+        check(self, "arc")
         _require(
             0.0 < self.end - self.start <= FULL_TURN + 1e-12,
             "an arc must end after it starts and span at most 360 deg",
             "arc.end",
             self.end,
         )
-        _require(0.0 <= self.preload < 1.0, "must be 0 to below 1", "arc.preload", self.preload)
-        _require(0.0 <= self.offset <= 1.0, "must be 0 to 1", "arc.offset", self.offset)
 
     @property
     def preload_angle(self) -> float:
         """Angle at which the lobe comes nearest to a centred journal [rad]."""
         return self.start + self.offset * (self.end - self.start)
+
+
+def profile_arcs(profile: BearingProfile, preload: float, offset: float | None) -> tuple[Arc, ...]:
+    """Return the arcs of a usual bore, angles from the load line.
+
+    Two lobes are centred on the load line and opposite it, the split at 90 and 270 deg; three lobes
+    with the first centred on the load line. `offset` is 0.5, for offset halves 1.0: each half
+    comes nearest where it ends, in the direction of rotation.
+    """
+    lobes = 3 if profile is BearingProfile.THREE_LOBE else 2
+    usual = 1.0 if profile is BearingProfile.OFFSET_HALVES else 0.5
+    span = FULL_TURN / lobes
+    return tuple(
+        Arc(
+            start=(lobe - 0.5) * span,
+            end=(lobe + 0.5) * span,
+            preload=preload,
+            offset=usual if offset is None else offset,
+        )
+        for lobe in range(lobes)
+    )
 
 
 @dataclass(frozen=True)
@@ -145,7 +175,7 @@ class Bearing:
         minus journal radius.
     grooves : tuple of Groove
     arcs : tuple of Arc
-        Empty: one concentric 360 degree bore.
+        Empty: those of `profile`; without one, one concentric 360 degree bore.
     bush_outer_radius : float or None
         [m]; needed for bush conduction only.
     tilt : tuple of float
@@ -156,25 +186,26 @@ class Bearing:
     pads : tuple of Pad
         Tilting pads in place of a bore, in the direction of rotation. The openings between them are
         the grooves: one before each pad, at ambient pressure unless `grooves` gives them.
+    profile : BearingProfile or None
+        Shorthand for the arcs of a usual bore, with its `preload` and `offset`.
     """
 
-    journal_radius: float
-    length: float
-    radial_clearance: float
-    grooves: tuple[Groove, ...] = ()
-    arcs: tuple[Arc, ...] = ()
-    bush_outer_radius: float | None = None
-    tilt: tuple[float, float] = (0.0, 0.0)
-    roughness: float = 0.0
-    pads: tuple[Pad, ...] = ()
+    journal_radius: Length
+    length: Annotated[Length, Example("80 mm")]
+    radial_clearance: Annotated[Clearance, SEVERAL]
+    grooves: Annotated[tuple[Groove, ...], Key("groove")] = ()
+    arcs: Annotated[tuple[Arc, ...], Key("arc")] = ()
+    bush_outer_radius: Length | None = None
+    tilt: tuple[Slope, Slope] = (0.0, 0.0)
+    roughness: Annotated[float, Quantity("length", "1 um", "not_negative")] = 0.0
+    pads: Annotated[tuple[Pad, ...], NOT_IN_FILES] = ()
+    profile: BearingProfile | None = field(default=None, compare=False)
+    preload: Preload | None = field(default=None, compare=False)
+    offset: Offset | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
+        check(self, "bearing")
         self._place_pads()
-        for name in ("journal_radius", "length", "radial_clearance"):
-            value = getattr(self, name)
-            _require(
-                math.isfinite(value) and value > 0.0, "must be above 0", f"bearing.{name}", value
-            )
         _require(
             self.radial_clearance < 0.1 * self.journal_radius,
             "must be small against the journal radius (below a tenth of it)",
@@ -188,12 +219,37 @@ class Bearing:
                 "bearing.bush_outer_radius",
                 self.bush_outer_radius,
             )
+        for groove in self.grooves:
+            _require(
+                groove.length is None or groove.length <= self.length * (1.0 + 1e-12),
+                f"must not be longer than the bearing ({self.length * 1e3:g} mm)",
+                f"bearing.groove[{self.grooves.index(groove)}].length",
+                groove.length,
+            )
+        object.__setattr__(self, "arcs", self._profiled())
+
+    def _profiled(self) -> tuple[Arc, ...]:
+        """Arcs as given, or of the profile."""
+        if self.profile is None:
+            for name in ("preload", "offset"):
+                _require(
+                    getattr(self, name) is None,
+                    'goes with bearing.profile; add profile = "elliptical", or give it to '
+                    "each [[bearing.arc]]",
+                    f"bearing.{name}",
+                    getattr(self, name),
+                )
+            return self.arcs
+        if self.preload is None:
+            raise InputError(
+                "is missing; a profile needs it, for example preload = 0.5", key="bearing.preload"
+            )
+        arcs = profile_arcs(self.profile, self.preload, self.offset)
         _require(
-            math.isfinite(self.roughness) and self.roughness >= 0.0,
-            "must be 0 or more",
-            "bearing.roughness",
-            self.roughness,
-        )
+            self.arcs in ((), arcs), "either a profile or [[bearing.arc]] tables, not both",
+            "bearing.profile", str(self.profile),
+        )  # fmt: skip
+        return arcs
 
     def _place_pads(self) -> None:
         if not self.pads:
@@ -245,6 +301,9 @@ class Bearing:
         cos, sin = math.cos(angle), math.sin(angle)
         return replace(
             self,
+            profile=None,
+            preload=None,
+            offset=None,
             grooves=tuple(replace(g, center=g.center + angle) for g in self.grooves),
             arcs=tuple(replace(a, start=a.start + angle, end=a.end + angle) for a in self.arcs),
             pads=tuple(replace(p, pivot_angle=p.pivot_angle + angle) for p in self.pads),

@@ -4,28 +4,79 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
+from typing import Annotated
+
+from ..errors import InputError
+from .entries import (
+    Duration,
+    Example,
+    Frequency,
+    Instant,
+    Key,
+    Leaf,
+    Pair,
+    Quantity,
+    check,
+    choice,
+)
+
+_Force = Annotated[float, Quantity("force", "500 N", "any")]
+Forces = Annotated[tuple[_Force, _Force], Example(["500 N", "0 N"])]
+_Phase = Annotated[float, Quantity("angle", "90 deg", "any")]
+Phases = tuple[_Phase, _Phase]
+_Acceleration = Annotated[float, Quantity("acceleration", "10 m/s^2", "any")]
+
+
+class _Place(StrEnum):
+    """Where a load acts on a rotor of one disc, in the order of its nodes."""
+
+    JOURNAL = "journal"
+    DISC = "disc"
+
+
+class _PlaceEntry(Leaf):
+    """A place by its name."""
+
+    def read(self, value: object) -> int:
+        return list(_Place).index(choice(_Place, value))
+
+
+Node = Annotated[int, Key("on"), _PlaceEntry()]
+
+
+def _check_times(load: StepForce | HarmonicForce | BaseMotion) -> None:
+    check(load)
+    if load.stop <= load.start:
+        raise InputError("must be after start", key="stop")
 
 
 @dataclass(frozen=True)
 class StepForce:
     """A force (fx, fy) [N] on a node from `start` until `stop` [s]."""
 
-    force: tuple[float, float]
-    start: float = 0.0
-    stop: float = math.inf
-    node: int = 0
+    force: Forces
+    start: Instant = 0.0
+    stop: Duration = math.inf
+    node: Node = 0
+
+    def __post_init__(self) -> None:
+        _check_times(self)
 
 
 @dataclass(frozen=True)
 class HarmonicForce:
     """A force fx cos(W t + px), fy cos(W t + py): forces [N], frequency W [rad/s], phases [rad]."""
 
-    force: tuple[float, float]
-    frequency: float
-    phase: tuple[float, float] = (0.0, 0.0)
-    start: float = 0.0
-    stop: float = math.inf
-    node: int = 0
+    force: Forces
+    frequency: Frequency
+    phase: Phases = (0.0, 0.0)
+    start: Instant = 0.0
+    stop: Duration = math.inf
+    node: Node = 0
+
+    def __post_init__(self) -> None:
+        _check_times(self)
 
 
 @dataclass(frozen=True)
@@ -45,20 +96,26 @@ class BaseMotion:
         [rad]
     """
 
-    displacement: tuple[float, float]
-    frequency: float
-    phase: tuple[float, float] = (0.0, 0.0)
-    start: float = 0.0
-    stop: float = math.inf
+    displacement: Annotated[Pair, Example(["10 um", "0 um"])]
+    frequency: Frequency
+    phase: Phases = (0.0, 0.0)
+    start: Instant = 0.0
+    stop: Duration = math.inf
+
+    def __post_init__(self) -> None:
+        _check_times(self)
 
 
 @dataclass(frozen=True)
 class BaseShock:
     """One half-sine pulse of base acceleration (ax, ay) [m/s2], `duration` long [s]."""
 
-    acceleration: tuple[float, float]
-    duration: float
-    start: float = 0.0
+    acceleration: Annotated[tuple[_Acceleration, _Acceleration], Example(["10 m/s^2", "0 m/s^2"])]
+    duration: Annotated[Duration, Example("11 ms")]
+    start: Instant = 0.0
+
+    def __post_init__(self) -> None:
+        check(self)
 
 
 Load = StepForce | HarmonicForce | BaseMotion | BaseShock

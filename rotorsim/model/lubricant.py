@@ -4,14 +4,29 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from typing import Annotated, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from .entries import Example, Leaf, Number, Quantity, Temperature, check
 
 ZERO_CELSIUS = 273.15
+
+
+LEAST_KINEMATIC = 0.35e-6
+"""Below this [m2/s] the Walther law means nothing."""
+TYPICAL = {"density": 860.0, "specific_heat": 2000.0, "thermal_conductivity": 0.13}
+"""Of a mineral oil, SI: used where they do not enter (an isothermal film's forces)."""
+
+DynamicViscosity = Annotated[float, Quantity("dynamic viscosity")]
+Coefficient = Annotated[
+    float, Quantity("temperature coefficient", "0.034 / delta_degC", "not_negative")
+]
+Density = Annotated[float, Quantity("density", "860 kg/m^3")]
+SpecificHeat = Annotated[float, Quantity("specific heat")]
+Conductivity = Annotated[float, Quantity("thermal conductivity")]
 
 
 @runtime_checkable
@@ -47,21 +62,12 @@ class ExponentialViscosity:
     0.014033
     """
 
-    reference_viscosity: float
-    reference_temperature: float
-    temperature_coefficient: float = 0.0
+    reference_viscosity: DynamicViscosity
+    reference_temperature: Temperature
+    temperature_coefficient: Coefficient = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("reference_viscosity", "reference_temperature"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise InputError("must be above 0", key=f"lubricant.{name}", value=value)
-        if not (math.isfinite(self.temperature_coefficient) and self.temperature_coefficient >= 0):
-            raise InputError(
-                "must be 0 or more",
-                key="lubricant.viscosity_temperature_coefficient",
-                value=self.temperature_coefficient,
-            )
+        check(self, "lubricant")
 
     def viscosity(self, temperature: ArrayLike) -> NDArray[np.float64]:
         """Dynamic viscosity [Pa s] at `temperature` [K]."""
@@ -204,17 +210,167 @@ class Lubricant:
     """
 
     law: ViscosityLaw
-    density: float
-    specific_heat: float
-    thermal_conductivity: float
+    density: Density
+    specific_heat: SpecificHeat
+    thermal_conductivity: Conductivity
     temperature_range: tuple[float, float] = (ZERO_CELSIUS - 20.0, ZERO_CELSIUS + 150.0)
 
     def __post_init__(self) -> None:
-        for name in ("density", "specific_heat", "thermal_conductivity"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise InputError("must be above 0", key=f"lubricant.{name}", value=value)
+        check(self, "lubricant")
 
     def viscosity(self, temperature: ArrayLike) -> NDArray[np.float64]:
         """Dynamic viscosity [Pa s] at `temperature` [K]."""
         return self.law.viscosity(temperature)
+
+    @property
+    def varies_with_temperature(self) -> bool:
+        """Whether the film's temperature matters to its viscosity."""
+        law = self.law
+        return not (isinstance(law, ExponentialViscosity) and law.temperature_coefficient == 0.0)
+
+
+class Viscosity(NamedTuple):
+    """A viscosity as it is written: dynamic [Pa s], or kinematic [m2/s]."""
+
+    value: float
+    is_kinematic: bool = False
+
+    def dynamic(self, density: float) -> float:
+        """Dynamic viscosity [Pa s] of an oil of that density [kg/m3]."""
+        return self.value * density if self.is_kinematic else self.value
+
+
+class _ViscosityEntry(Leaf):
+    """Text with a unit of dynamic or kinematic viscosity."""
+
+    def read(self, value: object) -> Viscosity:
+        try:
+            return Viscosity(Quantity("kinematic viscosity", "32 cSt").read(value), True)
+        except InputError:
+            return Viscosity(Quantity("dynamic viscosity", "0.0277 Pa*s").read(value))
+
+
+_Viscosity = Annotated[Viscosity, _ViscosityEntry()]
+_Point = tuple[Temperature, _Viscosity]
+
+
+def oil(
+    *,
+    viscosity: Annotated[_Viscosity | None, Example("0.0277 Pa*s")] = None,
+    reference_temperature: Temperature | None = None,
+    viscosity_temperature_coefficient: Coefficient | None = None,
+    iso_vg: Annotated[float, Number(above=5.0, most=5000.0, hint="for example 32")] | None = None,
+    viscosity_index: Annotated[
+        float,
+        Number(
+            least=0.0,
+            most=100.0,
+            hint="it lies from 0 to 100; give viscosity_points for other oils",
+        ),
+    ]
+    | None = None,
+    viscosity_points: tuple[_Point, _Point] | None = None,
+    density: Density | None = None,
+    specific_heat: SpecificHeat | None = None,
+    thermal_conductivity: Conductivity | None = None,
+) -> Lubricant:
+    """Make an oil from exactly one description of its viscosity.
+
+    Parameters
+    ----------
+    viscosity : Viscosity, optional
+        With `reference_temperature` [K] and `viscosity_temperature_coefficient` [1/K] where it is
+        not constant.
+    iso_vg : float, optional
+        ISO grade, with `viscosity_index` (100).
+    viscosity_points : pair of (temperature [K], Viscosity), optional
+        Two points of the Walther law.
+    density, specific_heat, thermal_conductivity : float, optional
+        Typical ones (`TYPICAL`) by default, where the viscosity needs no density.
+
+    Raises
+    ------
+    InputError
+        No description or two, or one that lacks something.
+    """
+    described = {"viscosity": viscosity, "iso_vg": iso_vg, "viscosity_points": viscosity_points}
+    given = [name for name, value in described.items() if value is not None]
+    if len(given) != 1:
+        found = "none is given" if not given else f"given are {' and '.join(given)}"
+        raise InputError(
+            "needs exactly one description of the viscosity: viscosity (with "
+            "reference_temperature and viscosity_temperature_coefficient), iso_vg or "
+            f"viscosity_points; {found}; for example iso_vg = 32",
+            key="lubricant" if not given else f"lubricant.{given[1]}",
+        )
+    companions = {
+        "viscosity_index": (viscosity_index, "iso_vg"),
+        "reference_temperature": (reference_temperature, "viscosity"),
+        "viscosity_temperature_coefficient": (viscosity_temperature_coefficient, "viscosity"),
+    }
+    for name, (value, partner) in companions.items():
+        if value is not None and partner != given[0]:
+            raise InputError(
+                f"goes with lubricant.{partner}, not with lubricant.{given[0]}; remove it",
+                key=f"lubricant.{name}",
+            )
+    if viscosity is not None:
+        law: ViscosityLaw = _exponential(
+            viscosity, reference_temperature, viscosity_temperature_coefficient, density
+        )
+    else:
+        known = _needed(density, "density", f"{given[0]} needs it", "860 kg/m^3")
+        if iso_vg is not None:
+            index = 100.0 if viscosity_index is None else viscosity_index
+            law = WaltherViscosity.from_iso_vg(iso_vg, known, index)
+        else:
+            assert viscosity_points is not None
+            law = _through(viscosity_points, known)
+    return Lubricant(
+        law,
+        density=density or TYPICAL["density"],
+        specific_heat=specific_heat or TYPICAL["specific_heat"],
+        thermal_conductivity=thermal_conductivity or TYPICAL["thermal_conductivity"],
+    )
+
+
+def _exponential(
+    viscosity: Viscosity,
+    reference: float | None,
+    coefficient: float | None,
+    density: float | None,
+) -> ExponentialViscosity:
+    mu = viscosity.value
+    if viscosity.is_kinematic:
+        known = _needed(density, "density", "a kinematic viscosity needs it", "860 kg/m^3")
+        mu = viscosity.dynamic(known)
+    if coefficient:
+        reference = _needed(
+            reference, "reference_temperature", "the coefficient starts from it", "40 degC"
+        )
+    # a constant viscosity has no use of a reference
+    return ExponentialViscosity(mu, reference or 313.15, coefficient or 0.0)
+
+
+def _through(points: tuple[_Point, _Point], density: float) -> WaltherViscosity:
+    first, second = ((temperature, mu.dynamic(density)) for temperature, mu in points)
+    for index, (_, mu) in enumerate((first, second)):
+        if mu / density < LEAST_KINEMATIC:
+            raise InputError(
+                f"is too thin for the Walther law (kinematic viscosity {mu / density * 1e6:.3g} "
+                f"mm2/s, at least {LEAST_KINEMATIC * 1e6:g} is needed)",
+                key=f"lubricant.viscosity_points[{index}]",
+            )
+    try:
+        return WaltherViscosity.from_points(first, second, density)
+    except InputError as error:
+        raise InputError(error.message, key="lubricant.viscosity_points") from None
+
+
+def _needed(value: float | None, name: str, reason: str, example: str) -> float:
+    if value is None:
+        raise InputError(
+            f'is missing: {reason}; write for example {name} = "{example}"',
+            key=f"lubricant.{name}",
+        )
+    return value

@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from enum import StrEnum
+from itertools import pairwise
+from typing import Annotated
 
 from ..errors import InputError
+from ..units import parse_quantity
+from .entries import (
+    NOT_IN_FILES,
+    SEVERAL,
+    Key,
+    Leaf,
+    Number,
+    Quantity,
+    Share,
+    Temperature,
+    check,
+    nearest,
+)
 
-
-def _as_choice(settings: object, section: str, **fields: type[StrEnum]) -> None:
-    """Turn plain strings into the enumerations' members, so that comparisons by identity hold."""
-    for name, kind in fields.items():
-        value = getattr(settings, name)
-        try:
-            object.__setattr__(settings, name, kind(value))
-        except ValueError:
-            allowed = ", ".join(kind)
-            raise InputError(
-                f"must be one of {allowed}", key=f"{section}.{name}", value=value
-            ) from None
+MAX_RATIOS = 64
+"""Frequency ratios at which K and C are given besides."""
+MAX_CELLS = 20_000_000
+"""Cells of the largest film or bush that is accepted."""
 
 
 class Cavitation(StrEnum):
@@ -72,6 +78,24 @@ class ShaftModel(StrEnum):
     GIVEN = "given"
 
 
+class _ShaftEntry(Leaf):
+    """A condition of the shaft, or its temperature."""
+
+    def read(self, value: object) -> ShaftModel | float:
+        names = [name for name in ShaftModel if name is not ShaftModel.GIVEN]
+        if isinstance(value, str) and value in names:
+            return ShaftModel(value)
+        try:
+            return parse_quantity(value, "temperature")
+        except InputError as error:
+            if isinstance(value, str) and any(sign.isdigit() for sign in value):
+                raise  # meant as a temperature
+            known = ", ".join(f'"{name}"' for name in names)
+            raise InputError(
+                f'must be one of {known}, or a temperature such as "60 degC"{nearest(value, names)}'
+            ) from error
+
+
 class ViscosityResponse(StrEnum):
     """What the viscosity does while the journal is displaced, for the stiffness."""
 
@@ -94,23 +118,20 @@ class RupturedFriction(StrEnum):
 class MeshSize:
     """Cells around the bearing, along its whole length, across the film and through the bush."""
 
-    circumferential: int = 156
-    axial: int = 48
-    cross_film: int = 24
-    bush_radial: int = 24
+    circumferential: Annotated[int, Number(least=16, most=4096)] = 156
+    axial: Annotated[int, Number(least=4, most=4096)] = 48
+    cross_film: Annotated[int, Number(least=4, most=4096)] = 24
+    bush_radial: Annotated[int, Number(least=2, most=4096)] = 24
 
     def __post_init__(self) -> None:
-        lowest = {"circumferential": 16, "axial": 4, "cross_film": 4, "bush_radial": 2}
-        for name, least in lowest.items():
-            value = getattr(self, name)
-            if not least <= value <= 4096:
-                raise InputError(
-                    f"must be a whole number from {least} to 4096",
-                    key=f"film.mesh.{name}",
-                    value=value,
-                )
+        check(self, "film.mesh")
         if self.axial % 2:
             raise InputError("must be even", key="film.mesh.axial", value=self.axial)
+        if self.circumferential * self.axial * max(self.cross_film, self.bush_radial) > MAX_CELLS:
+            raise InputError(
+                f"has more than {MAX_CELLS} cells; the default is 156 x 48 x 24 x 24",
+                key="film.mesh",
+            )
 
 
 @dataclass(frozen=True)
@@ -131,16 +152,17 @@ class FilmSettings:
     mesh: MeshSize = field(default_factory=MeshSize)
     ruptured_friction: RupturedFriction = RupturedFriction.LIQUID
     viscosity_response: ViscosityResponse = ViscosityResponse.FROZEN
-    frequency_ratios: tuple[float, ...] = ()
+    frequency_ratios: Annotated[
+        tuple[Annotated[float, Number(above=0.0)], ...], Key("frequency_ratio")
+    ] = ()
     rotations: bool = False
 
     def __post_init__(self) -> None:
-        _as_choice(self, "film", cavitation=Cavitation, inception=Inception)
-        _as_choice(self, "film", ruptured_friction=RupturedFriction)
-        _as_choice(self, "film", viscosity_response=ViscosityResponse)
+        check(self, "film")
         ratios = self.frequency_ratios
-        ascend = all(low < high for low, high in zip((0.0, *ratios), ratios, strict=False))
-        if not (ascend and all(math.isfinite(ratio) for ratio in ratios)):
+        if len(ratios) > MAX_RATIOS:
+            raise InputError(f"must hold at most {MAX_RATIOS} entries", key="film.frequency_ratio")
+        if any(high <= low for low, high in pairwise(ratios)):
             raise InputError(
                 "must be above 0 and ascend", key="film.frequency_ratio", value=list(ratios)
             )
@@ -158,6 +180,7 @@ class ThermalSettings:
     supply_temperature : float
         [K]; of the oil supplied, and of an isothermal film.
     inlet, shaft, bush
+        A number in place of a `ShaftModel` is the shaft's temperature [K].
     shaft_temperature : float or None
         [K]; with ``shaft = given``.
     bush_conductivity : float
@@ -169,32 +192,24 @@ class ThermalSettings:
         to 1; fresh oil replaces the rest.
     """
 
-    model: ThermalModel = ThermalModel.THD
-    ambient_temperature: float = 313.15
-    supply_temperature: float = 313.15
+    model: Annotated[ThermalModel, Key("models"), SEVERAL] = ThermalModel.THD
+    ambient_temperature: Temperature = 313.15
+    supply_temperature: Temperature = 313.15
     inlet: InletModel = InletModel.FRESH
-    shaft: ShaftModel = ShaftModel.AMBIENT
+    shaft: Annotated[ShaftModel, _ShaftEntry()] = ShaftModel.AMBIENT
     bush: BushModel = BushModel.AMBIENT
-    shaft_temperature: float | None = None
-    bush_conductivity: float = 250.0
-    bush_heat_transfer: float = 80.0
-    hot_oil_carry_over: float = 1.0
+    shaft_temperature: Annotated[Temperature | None, NOT_IN_FILES] = None
+    bush_conductivity: Annotated[float, Quantity("thermal conductivity")] = 250.0
+    bush_heat_transfer: Annotated[
+        float, Quantity("heat transfer coefficient", None, "not_negative")
+    ] = 80.0
+    hot_oil_carry_over: Share = 1.0
 
     def __post_init__(self) -> None:
-        _as_choice(self, "thermal", model=ThermalModel, inlet=InletModel)
-        _as_choice(self, "thermal", shaft=ShaftModel, bush=BushModel)
-        if not 0.0 <= self.hot_oil_carry_over <= 1.0:
-            raise InputError(
-                "must be 0 to 1", key="thermal.hot_oil_carry_over", value=self.hot_oil_carry_over
-            )
-        for name in ("ambient_temperature", "supply_temperature", "bush_conductivity"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0.0):
-                raise InputError("must be above 0", key=f"thermal.{name}", value=value)
-        if not (math.isfinite(self.bush_heat_transfer) and self.bush_heat_transfer >= 0.0):
-            raise InputError(
-                "must be 0 or more", key="thermal.bush_heat_transfer", value=self.bush_heat_transfer
-            )
+        if not isinstance(self.shaft, str):
+            object.__setattr__(self, "shaft_temperature", self.shaft)
+            object.__setattr__(self, "shaft", ShaftModel.GIVEN)
+        check(self, "thermal")
         if (self.shaft is ShaftModel.GIVEN) != (self.shaft_temperature is not None):
             raise InputError(
                 "a shaft temperature goes with shaft = given",

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import above_zero, not_negative
 from ..errors import InputError
+from ..model.entries import NEEDED, NOT_IN_FILES, Damping, Example, Mass, Stiffness, Unbalance
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -269,7 +270,12 @@ class Rotor:
         return found
 
     @classmethod
-    def rigid(cls, mass: float, unbalance: float = 0.0, phase: float = 0.0) -> Rotor:
+    def rigid(
+        cls,
+        mass: Mass,
+        unbalance: Unbalance = 0.0,
+        phase: Annotated[float, NOT_IN_FILES] = 0.0,
+    ) -> Rotor:
         """Rigid symmetric shaft on two identical bearings, per bearing (Dal Eq. 21).
 
         Parameters
@@ -332,11 +338,11 @@ class Rotor:
     @classmethod
     def jeffcott(
         cls,
-        disc_mass: float,
-        shaft_stiffness: float,
-        journal_mass: float = 0.0,
-        disc_damping: float = 0.0,
-        unbalance: float = 0.0,
+        disc_mass: Annotated[Mass, Example("600 kg")],
+        shaft_stiffness: Annotated[Stiffness, Example("100 MN/m")],
+        journal_mass: Annotated[Mass, Example("60 kg"), NEEDED] = 0.0,
+        disc_damping: Damping = 0.0,
+        unbalance: Unbalance = 0.0,
     ) -> Rotor:
         """Disc at mid-span of a flexible shaft on two identical bearings, one half of it.
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError, RotorsimError
-from ..files.scenario.settings import OrbitForce, SpeedRamp
+from ..model.orbit import OrbitForce, SpeedRamp
 from ..orbit.description import describe_orbit
 from ..study import orbits as orbit_steps
 from ..study.stability import StabilityCurve, stability_curves
@@ -185,8 +185,8 @@ def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
     settings = scenario.stability
     speeds = np.linspace(table.speeds[0], table.speeds[-1], MAP_CELLS)
     speeds = speeds if len(table.speeds) > 1 else table.speeds
-    if settings is not None and settings.mass:
-        return stability_map(table, np.asarray(settings.mass), speeds)
+    if settings is not None:
+        return stability_map(table, np.asarray(settings.masses), speeds)
     mass = np.linspace(0.05, 3.0, MAP_CELLS) * _usual_mass(scenario, table)
     return stability_map(table, mass, speeds)
 

@@ -111,7 +111,11 @@ def surrounding_table(scenario: Scenario, workers: int | None = None) -> Coeffic
     speeds, settings = scenario.speeds, orbit_settings(scenario)[0]
     count = min(speeds.size, SURROUNDING_SPEEDS)
     chosen = np.unique(np.linspace(0, speeds.size - 1, count).round().astype(int))
-    one = replace(scenario, radial_clearances=(settings.radial_clearance,), speeds=speeds[chosen])
+    one = replace(
+        scenario,
+        radial_clearances=(settings.radial_clearance,),
+        operating=replace(scenario.operating, speed=tuple(speeds[chosen].tolist())),
+    )
     return tabulate(one, workers=workers)
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from ..bearing.interpolation import Coefficients
 from ..errors import InputError
-from ..files.scenario.settings import ActuatorSettings, Design
+from ..model.orbit import ActuatorSettings, Design
 
 if TYPE_CHECKING:
     from ..machine.control import StateFeedback

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ..bearing.interpolation import Coefficients
 from ..bearing.whirl import WhirlThreshold, rigid_threshold
-from ..files.scenario.settings import ActuatorSettings, Design
 from ..machine.actuator import ActuatedForce
 from ..model import Case
+from ..model.orbit import ActuatorSettings, Design
 from .actuators import design_feedback
 
 if TYPE_CHECKING:

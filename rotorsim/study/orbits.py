@@ -10,13 +10,14 @@ import numpy as np
 
 from ..arguments import refuse_path
 from ..errors import InputError
-from ..files.scenario.settings import OrbitForce, SpeedRamp
+from ..model.orbit import OrbitForce, SpeedRamp
 from .actuators import with_actuator
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
-    from ..files.scenario import OrbitSettings, Scenario
+    from ..files.scenario import Scenario
     from ..model import Bearing
+    from ..model.orbit import OrbitSettings
     from ..orbit import LinearForce, LoadedFilm, Orbit, OrbitProblem, SpeedSchedule
     from ..rotor import Rotor
 

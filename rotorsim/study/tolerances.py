@@ -24,7 +24,8 @@ from .axes import changed, with_mesh
 if TYPE_CHECKING:
     from ..bearing.interpolation import CoefficientInterpolator
     from ..bearing.operating_point import OperatingPoint
-    from ..files.scenario import Scenario, ToleranceSettings
+    from ..files.scenario import Scenario
+    from ..model.tolerances import ToleranceSettings
 
 Array = NDArray[np.float64]
 

@@ -11,13 +11,13 @@ from rotorsim.bearing import solve as solver
 from rotorsim.bearing.solve import solve_case
 from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError, ScenarioError
-from rotorsim.files.scenario import Scenario, ToleranceSettings
-from rotorsim.files.scenario.tolerances import parse_spread
+from rotorsim.files.scenario import Scenario
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.map import stability_map
 from rotorsim.machine.modes import threshold_speeds
 from rotorsim.machine.support import TableSupport
 from rotorsim.model import LoadTarget, MeshSize
+from rotorsim.model.tolerances import ToleranceSettings, parse_spread
 from rotorsim.rotor import Rotor
 from rotorsim.show.stability_figures import tolerance_figure
 from rotorsim.status import SolveStatus
@@ -215,7 +215,7 @@ def test_spreads_are_read_and_refused():
     # As --tolerance gives it; the scenario's own check comes before.
     wide = parse_spread({"spread": "30 %", "distribution": "normal"}, "radial_clearance")
     with pytest.raises(InputError, match="below zero"):
-        tolerances_of(case, ToleranceSettings({"radial_clearance": wide}))
+        tolerances_of(case, ToleranceSettings(radial_clearance=wide))
 
 
 @pytest.mark.parametrize(
@@ -227,7 +227,7 @@ def test_spreads_are_read_and_refused():
         ('"10 %"', '"1 Pa*s"', ["tolerances.viscosity", "10 %"]),
         ('"3 K"', '"3 %"', ["tolerances.supply_temperature", "3 K"]),
         ('"3 K"', '"3 degC"', ["tolerances.supply_temperature", "delta_degC"]),
-        ('"normal"', '"gauss"', ["tolerances.load", "uniform, normal"]),
+        ('"normal"', '"gauss"', ["tolerances.load", '"uniform", "normal"']),
         ("samples = 32", "samples = 2", ["tolerances.samples", "8"]),
         ("samples", "sample", ["tolerances.sample", "samples"]),
         ("viscosity = ", "oil = ", ["tolerances.oil"]),

@@ -10,11 +10,11 @@ import pytest
 from scipy.linalg import expm
 
 from rotorsim.errors import InputError, ScenarioError
-from rotorsim.files.scenario import OrbitKind, Scenario, load_scenario
-from rotorsim.files.scenario.settings import ActuatorSettings, Design
+from rotorsim.files.scenario import Scenario, load_scenario
 from rotorsim.machine.matrices import state_matrix
 from rotorsim.model import Cavitation, Inception
 from rotorsim.model.loads import BaseMotion, BaseShock, HarmonicForce, StepForce
+from rotorsim.model.orbit import ActuatorSettings, Design, OrbitKind
 from rotorsim.orbit import (
     FilmMapForce,
     OrbitStatus,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from rotorsim.files.scenario.settings import OrbitKind
+from rotorsim.model.orbit import OrbitKind
 from rotorsim.show.recording import (
     CascadePicture,
     FilmSurface,

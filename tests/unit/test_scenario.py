@@ -13,7 +13,7 @@ import pytest
 from scenario_texts import BEARING, CONSTANT_OIL
 
 from rotorsim.errors import ScenarioError
-from rotorsim.files.scenario import OrbitForce, Scenario, SpeedRamp, load_scenario
+from rotorsim.files.scenario import Scenario, load_scenario
 from rotorsim.film.geometry import bore_offset
 from rotorsim.model import (
     EccentricityTarget,
@@ -25,6 +25,7 @@ from rotorsim.model import (
     ThermalModel,
     WaltherViscosity,
 )
+from rotorsim.model.orbit import OrbitForce, SpeedRamp
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
 MINIMAL = f"""\
@@ -99,7 +100,7 @@ def test_cases_go_model_by_model() -> None:
 def test_case_may_omit_what_leaves_no_choice() -> None:
     assert Scenario.from_text(MINIMAL).case() == next(Scenario.from_text(MINIMAL).cases())
     dal = load_scenario(SCENARIOS / "dal.toml")
-    with pytest.raises(ScenarioError, match=r"0\.0001, 0\.000125, 0\.00015 m \(100, 125, 150 um"):
+    with pytest.raises(ScenarioError, match=r"0\.0001, 0\.000125, 0\.00015 m \(100, 125, 150 µm"):
         dal.case(thermal_model="thd")
     with pytest.raises(ScenarioError, match=r"0\.0001, 0\.000125, 0\.00015.*9e-05"):
         dal.case(9e-5, "thd")
@@ -353,7 +354,7 @@ def test_orbit_and_rotor() -> None:
     )
     scenario = Scenario.from_text(text)
     assert scenario.rotor is not None
-    assert (scenario.rotor.mass, scenario.rotor.unbalance) == (1000.0, 5e-4)
+    assert scenario.rotor.parameters == {"mass": 1000.0, "unbalance": 5e-4}
     orbit = scenario.orbit
     assert orbit is not None
     assert orbit.force is OrbitForce.FILM

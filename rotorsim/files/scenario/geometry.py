@@ -8,93 +8,13 @@ from itertools import pairwise
 import numpy as np
 
 from ...errors import InputError
-from ...model import Arc, Bearing, Groove, MeshSize
+from ...model import Bearing, MeshSize
 from ...model.bearing import FULL_TURN
-from .schema import BearingTable
-from .settings import BearingProfile
 
 TOLERANCE = 1e-9
 """Angle below which two edges are taken for one [rad]."""
 LEAST_CELLS = 2
 """Cells that a groove, or the land between two, must at least have."""
-
-
-def profile_arcs(profile: BearingProfile, preload: float, offset: float | None) -> tuple[Arc, ...]:
-    """Arcs of a usual bore, angles from the load line.
-
-    Two lobes are centred on the load line and opposite it, the split at 90 and 270 deg; three lobes
-    with the first centred on the load line. `offset` is 0.5, for offset halves 1.0: each half
-    comes nearest where it ends, in the direction of rotation.
-    """
-    lobes = 3 if profile is BearingProfile.THREE_LOBE else 2
-    usual = 1.0 if profile is BearingProfile.OFFSET_HALVES else 0.5
-    span = FULL_TURN / lobes
-    return tuple(
-        Arc(
-            start=(lobe - 0.5) * span,
-            end=(lobe + 0.5) * span,
-            preload=preload,
-            offset=usual if offset is None else offset,
-        )
-        for lobe in range(lobes)
-    )
-
-
-def bearing_arcs(table: BearingTable) -> tuple[Arc, ...]:
-    """Arcs as listed, or of the profile; none for a plain bore."""
-    if table.profile is None:
-        for name in ("preload", "offset"):
-            if getattr(table, name) is not None:
-                raise InputError(
-                    'goes with bearing.profile; add profile = "elliptical", or give it to '
-                    "each [[bearing.arc]]",
-                    key=f"bearing.{name}",
-                )
-        arcs = []
-        for index, arc in enumerate(table.arc):
-            try:
-                arcs.append(Arc(arc.start, arc.end, arc.preload, arc.offset))
-            except InputError as error:
-                name = (error.key or "arc").removeprefix("arc")
-                raise InputError(error.message, key=f"bearing.arc[{index}]{name}") from None
-        return tuple(arcs)
-    if table.arc:
-        raise InputError(
-            "either a profile or [[bearing.arc]] tables, not both", key="bearing.profile"
-        )
-    if table.preload is None:
-        raise InputError(
-            "is missing; a profile needs it, for example preload = 0.5", key="bearing.preload"
-        )
-    return profile_arcs(table.profile, table.preload, table.offset)
-
-
-def bearing_grooves(table: BearingTable) -> tuple[Groove, ...]:
-    """Grooves as listed."""
-    grooves = []
-    for index, entry in enumerate(table.groove):
-        key = f"bearing.groove[{index}]"
-        if entry.length is not None and entry.length > table.length * (1.0 + 1e-12):
-            raise InputError(
-                f"must not be longer than the bearing ({table.length * 1e3:g} mm)",
-                key=f"{key}.length",
-            )
-        try:
-            grooves.append(
-                Groove(
-                    entry.center,
-                    entry.extent,
-                    entry.length,
-                    entry.supply_pressure,
-                    entry.supply_temperature,
-                    entry.sealed_ends,
-                    entry.end_land,
-                )
-            )
-        except InputError as error:
-            name = (error.key or "groove").removeprefix("groove")
-            raise InputError(error.message, key=key + name) from None
-    return tuple(grooves)
 
 
 def check_grooves(bearing: Bearing, mesh: MeshSize) -> None:

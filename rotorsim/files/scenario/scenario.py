@@ -7,26 +7,45 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
-from ...arguments import check_number
+from ...arguments import finite_number
 from ...errors import InputError, ScenarioError
 from ...model import Bearing, Case, FilmSettings, Lubricant, Target, ThermalModel, ThermalSettings
+from ...model.entries import NOT_IN_FILES, Leaf, Made
+from ...model.lubricant import oil
+from ...model.operating import Operating, StabilitySettings
+from ...model.orbit import OrbitSettings
+from ...model.tolerances import ToleranceSettings
 from ...rotor import Rotor
 from ...shipped import shipped_scenarios
 from ...text import printable
-from . import build
+from .consistency import settled
 from .document import parse_toml, read_text
-from .messages import as_written, dotted, location, scenario_error, shown
-from .oil import lubricant
-from .orbit import orbit_settings
-from .schema import ScenarioTables
-from .settings import OrbitSettings, StabilitySettings
-from .tolerances import ToleranceSettings
+from .reader import Reader
+
+MAX_TITLE = 500
+_ROTORS = Made({"rigid": Rotor.rigid, "jeffcott": Rotor.jeffcott})
+"""What ``[rotor]`` makes, by its ``kind``."""
+
+
+class _TitleEntry(Leaf):
+    """One line of text."""
+
+    def read(self, value: object) -> str:
+        if not isinstance(value, str):
+            raise InputError("must be text in quotes")
+        if len(value) > MAX_TITLE:
+            raise InputError(f"must be at most {MAX_TITLE} characters")
+        if not value.isprintable():
+            raise InputError(
+                "must be one line of text without control characters such as tabs, line ends or "
+                "escapes"
+            )
+        return value
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,50 +54,63 @@ class Scenario:
 
     Attributes
     ----------
-    title : str
-    source : Path or None
-        The file it came from.
-    text : str
-        The TOML text, lines ended by a line feed.
-    sha256 : str
-        Of the text in UTF-8.
     bearing : Bearing
         With the first clearance, angles as given in the file (before the load is turned to x).
-    radial_clearances : tuple of float
-        [m]
-    load_direction : float
-        Angle of the load in the frame in which the bearing is given [rad].
     lubricant : Lubricant
+    operating : Operating
+    title : str
     film : FilmSettings
     thermal : ThermalSettings
         With the first thermal model.
-    thermal_models : tuple of ThermalModel
-    speeds : (n,) array
-        Ascending [rad/s], read-only.
-    target : EccentricityTarget or LoadTarget
     rotor : Rotor or None
     orbit : OrbitSettings or None
     stability : StabilitySettings or None
     tolerances : ToleranceSettings or None
+    radial_clearances : tuple of float
+        [m]
+    thermal_models : tuple of ThermalModel
+    source : Path or None
+        The file it came from.
+    text : str
+        The TOML text, lines ended by a line feed.
     """
 
-    title: str
-    source: Path | None
-    text: str = field(repr=False)
-    sha256: str
     bearing: Bearing
-    radial_clearances: tuple[float, ...]
-    load_direction: float
-    lubricant: Lubricant
-    film: FilmSettings
-    thermal: ThermalSettings
-    thermal_models: tuple[ThermalModel, ...]
-    speeds: NDArray[np.float64]
-    target: Target
-    rotor: Rotor | None = None
+    lubricant: Annotated[Lubricant, Made(oil)]
+    operating: Operating
+    title: Annotated[str, _TitleEntry()] = ""
+    film: FilmSettings = field(default_factory=FilmSettings)
+    thermal: ThermalSettings = field(default_factory=ThermalSettings)
+    rotor: Annotated[Rotor | None, _ROTORS] = None
     orbit: OrbitSettings | None = None
     stability: StabilitySettings | None = None
     tolerances: ToleranceSettings | None = None
+    radial_clearances: Annotated[tuple[float, ...], NOT_IN_FILES] = ()
+    thermal_models: Annotated[tuple[ThermalModel, ...], NOT_IN_FILES] = ()
+    source: Annotated[Path | None, NOT_IN_FILES] = None
+    text: Annotated[str, NOT_IN_FILES] = field(default="", repr=False)
+
+    @property
+    def sha256(self) -> str:
+        """Hash of the text in UTF-8."""
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+    @property
+    def load_direction(self) -> float:
+        """Angle of the load in the frame in which the bearing is given [rad]."""
+        return self.operating.load_direction
+
+    @property
+    def speeds(self) -> NDArray[np.float64]:
+        """Speeds (n,), ascending [rad/s], read-only."""
+        speeds = np.array(self.operating.speeds)
+        speeds.setflags(write=False)
+        return speeds
+
+    @property
+    def target(self) -> Target:
+        """What fixes the journal: an eccentricity ratio or a load."""
+        return self.operating.target
 
     @classmethod
     def from_text(cls, text: str, source: str | Path | None = None) -> Scenario:
@@ -113,18 +145,26 @@ class Scenario:
         """
         path = None if source is None else Path(source)
         name = "scenario text" if path is None else str(path)
-        entries = parse_toml(text, name)
+        tables = parse_toml(text, name)
+        reader = Reader(tables, cls, name)
+        arguments = reader.arguments()
         try:
-            tables = ScenarioTables.model_validate(entries)
-        except ValidationError as error:
-            raise scenario_error(error, entries, name) from None
-        try:
-            return cls(text=text, source=path, **_parts(tables, text, path))
+            thermal = arguments.pop("thermal", ThermalSettings())
+            models = reader.lists.get("thermal.models", (ThermalModel.ISOTHERMAL,))
+            scenario = cls(
+                **arguments,
+                thermal=replace(thermal, model=models[0]),
+                radial_clearances=reader.lists["bearing.radial_clearance"],
+                thermal_models=models,
+                source=path,
+                text=text,
+            )
+            if not scenario.title:
+                title = "untitled" if path is None else printable(path.stem)
+                scenario = replace(scenario, title=title)
+            return settled(scenario, tables)
         except InputError as error:
-            path_to, value = as_written(location(error.key or ""), entries)
-            raise ScenarioError(
-                error.message, source=name, key=dotted(path_to), value=shown(value)
-            ) from None
+            raise reader.error(error) from None
 
     def case(
         self,
@@ -166,7 +206,7 @@ class Scenario:
         if wanted is None and len(self.radial_clearances) == 1:
             return self.radial_clearances[0]
         if wanted is not None:
-            check_number(wanted, "radial_clearance", "m")
+            finite_number(wanted, "radial_clearance", "m")
         for clearance in self.radial_clearances:
             if wanted is not None and math.isclose(clearance, wanted, rel_tol=1e-6):
                 return clearance
@@ -218,31 +258,3 @@ def load_scenario(path: str | Path) -> Scenario:
     if shipped is not None and not Path(path).exists():
         path = shipped
     return Scenario.from_text(read_text(path), source=path)
-
-
-def _parts(tables: ScenarioTables, text: str, path: Path | None) -> dict[str, Any]:
-    """Everything that the tables say, as model objects."""
-    heated = ThermalModel.THD in tables.thermal.models
-    oil = lubricant(tables.lubricant, heated=heated)
-    film = build.film_settings(tables.film)
-    bearings = build.bearings(tables.bearing, film.mesh, tables.operating.eccentricity_ratio)
-    clearances = tuple(bearing.radial_clearance for bearing in bearings)
-    speeds = build.speeds(tables.operating)
-    return {
-        "title": build.title(tables.title)
-        or ("untitled" if path is None else printable(path.stem)),
-        "sha256": hashlib.sha256(text.encode()).hexdigest(),
-        "bearing": bearings[0],
-        "radial_clearances": clearances,
-        "load_direction": tables.operating.load_direction,
-        "lubricant": oil,
-        "film": film,
-        "thermal": build.thermal_settings(tables, oil),
-        "thermal_models": tuple(tables.thermal.models),
-        "speeds": speeds,
-        "target": build.target(tables.operating),
-        "rotor": build.rotor(tables),
-        "orbit": orbit_settings(tables, bearings[0], clearances, speeds),
-        "stability": build.stability_settings(tables),
-        "tolerances": build.tolerance_settings(tables),
-    }

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Annotated
 
-from pydantic import PlainValidator
-
-from ...errors import InputError
-from ...units import parse_quantity
-from .fields import nearest
+from ..errors import InputError
+from ..units import parse_quantity
+from .entries import Leaf, Number, check, choice
+from .operating import MAX_COUNT
 
 _PERCENT = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*%\s*", re.ASCII)
 _MAX_PERCENT = 50.0
@@ -51,28 +50,6 @@ class Spread:
     def absolute(self, nominal: float) -> float:
         """Spread in the input's own unit."""
         return self.value * abs(nominal) if self.relative else self.value
-
-
-@dataclass(frozen=True)
-class ToleranceSettings:
-    """The scenario's ``[tolerances]``.
-
-    Parameters
-    ----------
-    spreads : mapping of str to Spread
-        By input: ``radial_clearance``, ``viscosity``, ``load``, ``supply_temperature``.
-    distribution : Distribution
-        Of every input that does not say otherwise.
-    samples : int
-        Sets of inputs that are drawn.
-    seed : int
-        The same seed draws the same samples.
-    """
-
-    spreads: Mapping[str, Spread]
-    distribution: Distribution = Distribution.UNIFORM
-    samples: int = DEFAULT_SAMPLES
-    seed: int = 0
 
 
 KINDS: dict[str, tuple[str | None, str]] = {
@@ -122,15 +99,57 @@ def _from_table(table: dict[object, object], name: str) -> Spread:
     spread = parse_spread(table["spread"], name)
     if "distribution" not in table:
         return spread
-    given = table["distribution"]
-    known = [member.value for member in Distribution]
-    if given not in known:
-        raise InputError(
-            f"distribution must be one of {', '.join(known)}{nearest(given, known)}", value=given
-        )
-    return Spread(spread.value, spread.relative, Distribution(str(given)))
+    try:
+        named = choice(Distribution, table["distribution"])
+    except InputError as error:
+        raise InputError(f"distribution {error.message}") from None
+    return Spread(spread.value, spread.relative, Distribution(named))
 
 
-def spread_of(name: str) -> PlainValidator:
-    """Field of the table ``[tolerances]``."""
-    return PlainValidator(lambda text: parse_spread(text, name))
+@dataclass(frozen=True)
+class _SpreadEntry(Leaf):
+    """A spread, by the rules of the input `name`."""
+
+    name: str
+
+    def read(self, value: object) -> Spread:
+        return parse_spread(value, self.name)
+
+
+@dataclass(frozen=True)
+class ToleranceSettings:
+    """The scenario's ``[tolerances]``: one input or more.
+
+    Parameters
+    ----------
+    radial_clearance, viscosity, load, supply_temperature : Spread or None
+        About the nominal values.
+    distribution : Distribution
+        Of every input that does not say otherwise.
+    samples : int
+        Sets of inputs that are drawn.
+    seed : int
+        The same seed draws the same samples.
+    """
+
+    radial_clearance: Annotated[Spread | None, _SpreadEntry("radial_clearance")] = None
+    viscosity: Annotated[Spread | None, _SpreadEntry("viscosity")] = None
+    load: Annotated[Spread | None, _SpreadEntry("load")] = None
+    supply_temperature: Annotated[Spread | None, _SpreadEntry("supply_temperature")] = None
+    distribution: Distribution = Distribution.UNIFORM
+    samples: Annotated[int, Number(least=8, most=MAX_COUNT)] = DEFAULT_SAMPLES
+    seed: Annotated[int, Number(least=0, most=2**31)] = 0
+
+    def __post_init__(self) -> None:
+        check(self, "tolerances")
+        if not self.spreads:
+            raise InputError(
+                f"needs one input or more ({', '.join(KINDS)}); write for example "
+                'radial_clearance = "5 um"',
+                key="tolerances",
+            )
+
+    @property
+    def spreads(self) -> dict[str, Spread]:
+        """Spread of every input that has one."""
+        return {name: spread for name in KINDS if (spread := getattr(self, name)) is not None}

@@ -1,0 +1,324 @@
+"""What a scenario's entries must say together, and what they say by being left out.
+
+Every function raises `InputError` with the key; `scenario` adds the file and the value found.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import InputError
+from ...model import BushModel, Cavitation, Inception, Lubricant, ThermalModel, ThermalSettings
+from ...model.orbit import OrbitForce, OrbitKind, OrbitSettings, SpeedRamp
+from ...model.tolerances import NORMAL_REACH, Distribution
+from ...rotor import Rotor
+from .geometry import check_arcs, check_eccentricity, check_grooves, check_tilt
+
+if TYPE_CHECKING:
+    from .scenario import Scenario
+
+Tables = Mapping[str, Any]
+SENSIBLE_VISCOSITY = (1e-7, 1e5)
+"""Of the oil at the temperatures given [Pa s]."""
+DEFAULT_REVOLUTIONS = 60
+_RPM = 30.0 / math.pi
+
+
+def settled(scenario: Scenario, tables: Tables) -> Scenario:
+    """Return the scenario with what its entries leave open, or refuse what does not go together.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    tables : dict
+        As the file has them: which entries are written.
+    """
+    check_bearings(scenario)
+    thermal = settled_thermal(scenario, tables)
+    if scenario.tolerances is not None:
+        check_tolerances(scenario)
+    orbit = scenario.orbit
+    if orbit is not None:
+        orbit = settled_orbit(orbit, scenario, tables["orbit"])
+    return replace(scenario, thermal=thermal, orbit=orbit)
+
+
+def check_bearings(scenario: Scenario) -> None:
+    """Check the bearing with each of its clearances."""
+    clearances, eccentricity = scenario.radial_clearances, scenario.operating.eccentricity_ratio
+    for index, clearance in enumerate(clearances):
+        key = f"bearing.radial_clearance[{index}]"
+        if any(math.isclose(clearance, other) for other in clearances[:index]):
+            raise InputError("must hold each clearance once; remove the repeated one", key=key)
+        try:
+            bearing = replace(scenario.bearing, radial_clearance=clearance)
+        except InputError as error:
+            of_clearance = error.key == "bearing.radial_clearance"
+            raise InputError(error.message, key=key if of_clearance else error.key) from None
+        if bearing.roughness >= clearance:
+            raise InputError("must be below the radial clearance", key="bearing.roughness")
+        check_tilt(bearing, eccentricity)
+    check_grooves(scenario.bearing, scenario.film.mesh)
+    check_arcs(scenario.bearing)
+    check_eccentricity(scenario.bearing, eccentricity)
+
+
+def settled_thermal(scenario: Scenario, tables: Tables) -> ThermalSettings:
+    """Return the thermal settings with the temperatures that are left out."""
+    given, oil, thermal = tables.get("thermal", {}), scenario.lubricant, scenario.thermal
+    if len(set(scenario.thermal_models)) != len(scenario.thermal_models):
+        raise InputError("must hold each model once", key="thermal.models")
+    heated = ThermalModel.THD in scenario.thermal_models
+    if heated:
+        for name, example in _HEATED_OIL.items():
+            _need(tables["lubricant"], "lubricant", name, example, "a thd model needs it")
+        if "viscosity" in tables["lubricant"]:
+            _need(
+                tables["lubricant"], "lubricant", "viscosity_temperature_coefficient",
+                "0.034 / delta_degC", "a thd model needs it (or give iso_vg)",
+            )  # fmt: skip
+        _need(given, "thermal", "ambient_temperature", "40 degC", "a thd model needs it")
+    supply, ambient = (given.get(f"{name}_temperature") for name in ("supply", "ambient"))
+    if supply is None and ambient is None:
+        if oil.varies_with_temperature:
+            reason = "this oil's viscosity needs it"
+            _need(given, "thermal", "ambient_temperature", "40 degC", reason)
+    elif supply is None:
+        thermal = replace(thermal, supply_temperature=thermal.ambient_temperature)
+    elif ambient is None:
+        thermal = replace(thermal, ambient_temperature=thermal.supply_temperature)
+    if heated and thermal.bush is BushModel.CONDUCTION:
+        for table, name, example in _CONDUCTION:
+            reason = 'thermal.bush = "conduction" needs it'
+            _need(tables.get(table, {}), table, name, example, reason)
+    _check_viscosities(scenario, thermal, ambient is not None)
+    return thermal
+
+
+_HEATED_OIL = {
+    "density": "860 kg/m^3",
+    "specific_heat": "2000 J/(kg*delta_degC)",
+    "thermal_conductivity": "0.13 W/(m*delta_degC)",
+}
+_CONDUCTION = (
+    ("bearing", "bush_outer_radius", "75 mm"),
+    ("thermal", "bush_conductivity", "50 W/(m*delta_degC)"),
+    ("thermal", "bush_heat_transfer", "80 W/(m^2*delta_degC)"),
+)
+
+
+def _need(given: Tables, table: str, name: str, example: str, reason: str) -> None:
+    if name not in given:
+        raise InputError(
+            f'is missing: {reason}; write for example {name} = "{example}"', key=f"{table}.{name}"
+        )
+
+
+def _check_viscosities(scenario: Scenario, thermal: ThermalSettings, has_ambient: bool) -> None:
+    """Refuse temperatures of walls and supplied oil at which the oil's law means nothing."""
+    found = {"thermal.ambient_temperature": thermal.ambient_temperature} if has_ambient else {}
+    found["thermal.supply_temperature"] = thermal.supply_temperature
+    if thermal.shaft_temperature is not None:
+        found["thermal.shaft"] = thermal.shaft_temperature
+    for index, groove in enumerate(scenario.bearing.grooves):
+        if groove.supply_temperature is not None:
+            found[f"bearing.groove[{index}].supply_temperature"] = groove.supply_temperature
+    for key, temperature in found.items():
+        _check_viscosity(scenario.lubricant, temperature, key)
+
+
+def _check_viscosity(oil: Lubricant, temperature: float, key: str) -> None:
+    low, high = SENSIBLE_VISCOSITY
+    with np.errstate(all="ignore"):
+        viscosity = float(oil.viscosity(temperature))
+    if not low <= viscosity <= high:
+        raise InputError(
+            f"gives the oil a viscosity of {viscosity:.3g} Pa*s at {temperature:.6g} K, beyond "
+            f"sense ({low:g} to {high:g} Pa*s): check this temperature and [lubricant]",
+            key=key,
+        )
+
+
+def check_tolerances(scenario: Scenario) -> None:
+    """Refuse spreads that leave nothing of the value they are about, or less."""
+    settings, load = scenario.tolerances, scenario.operating.load
+    assert settings is not None
+    if settings.load is not None and load is None:
+        raise InputError(
+            "goes with operating.load; with an eccentricity ratio the load is a result",
+            key="tolerances.load",
+        )
+    about = {
+        "radial_clearance": ("bearing", min(scenario.radial_clearances), 1e6, "um"),
+        "load": ("operating", load or math.inf, 1e-3, "kN"),
+    }
+    for name, spread in settings.spreads.items():
+        normal = (spread.distribution or settings.distribution) is Distribution.NORMAL
+        table, nominal, factor, unit = about.get(name, ("", math.inf, 1.0, ""))
+        if spread.relative:  # of whatever it is a share
+            nominal, factor, unit = 1.0, 100.0, "%"
+        limit = nominal / (NORMAL_REACH if normal else 1.0)
+        if spread.value < limit:
+            continue
+        of = "" if spread.relative else f" {table}.{name}, {nominal * factor:.6g} {unit}"
+        raise InputError(
+            f"must be below {limit * factor:.6g} {unit}: a normal distribution reaches four "
+            f"standard deviations, and something must be left of{of or ' the value'}"
+            if normal
+            else f"must be below{of}: something must be left of it",
+            key=f"tolerances.{name}",
+        )
+
+
+def settled_orbit(orbit: OrbitSettings, scenario: Scenario, given: Tables) -> OrbitSettings:
+    """Return the orbit with the clearance, duration, kind and actuator that are left out."""
+    rotor = scenario.rotor
+    if rotor is None:
+        raise InputError('is missing: an orbit needs a rotor; add mass = "1200 kg"', key="rotor")
+    if orbit.force is OrbitForce.LINEAR:
+        _check_tabulated(orbit, scenario.operating.speeds)
+    orbit = replace(
+        orbit,
+        radial_clearance=_orbit_clearance(orbit, scenario.radial_clearances),
+        unbalance=orbit.unbalance
+        if "unbalance" in given
+        else not ("kind" in given and orbit.kind is OrbitKind.FREE_DECAY),
+    )
+    _check_start(orbit, scenario.operating.eccentricity_ratio)
+    if not orbit.is_ramped and orbit.revolutions is None:
+        orbit = replace(orbit, revolutions=DEFAULT_REVOLUTIONS)
+    _check_nodes(orbit, rotor)
+    kinds = orbit.kinds(float(np.abs(rotor.unbalance).max()))
+    if "kind" not in given:
+        orbit = replace(orbit, kind=kinds[0])
+    else:
+        _check_kind(orbit, kinds)
+    if orbit.actuator is not None:
+        if orbit.actuator.on:
+            _check_actuator(orbit, scenario)
+        else:
+            orbit = replace(orbit, actuator=None)
+    return orbit
+
+
+def _check_tabulated(orbit: OrbitSettings, tabulated: tuple[float, ...]) -> None:
+    ends = {"orbit.speed": orbit.speed}
+    if isinstance(orbit.speed, SpeedRamp):
+        ends = {"orbit.speed.start": orbit.speed.start, "orbit.speed.stop": orbit.speed.stop}
+    low, high = tabulated[0], tabulated[-1]
+    for key, value in ends.items():
+        assert isinstance(value, float)
+        if not low <= value <= high:
+            raise InputError(
+                "must lie within operating.speed, where the coefficients are tabulated "
+                f"({low * _RPM:.6g} to {high * _RPM:.6g} rpm)",
+                key=key,
+            )
+
+
+def _orbit_clearance(orbit: OrbitSettings, choices: tuple[float, ...]) -> float:
+    if math.isnan(orbit.radial_clearance):
+        return choices[0]
+    for choice in choices:
+        if math.isclose(choice, orbit.radial_clearance):
+            return choice
+    allowed = ", ".join(f'"{choice * 1e6:g} um"' for choice in choices)
+    raise InputError(
+        f"must be one of bearing.radial_clearance ({allowed})", key="orbit.radial_clearance"
+    )
+
+
+def _check_start(orbit: OrbitSettings, eccentricity_ratio: float | None) -> None:
+    """Refuse a start outside the clearance, wherever the equilibrium may be."""
+    farthest = orbit.radial_clearance * (
+        1.0 + (1.0 if eccentricity_ratio is None else eccentricity_ratio)
+    )
+    if math.hypot(*orbit.initial_displacement) >= farthest:
+        raise InputError(
+            "starts outside the clearance: from the equilibrium it must be less than "
+            f"{farthest * 1e6:.4g} µm",
+            key="orbit.initial_displacement",
+        )
+
+
+def _check_nodes(orbit: OrbitSettings, rotor: Rotor) -> None:
+    for name, load in (("step", orbit.step), ("harmonic", orbit.harmonic)):
+        if load is not None and load.node >= len(rotor.nodes):
+            raise InputError(
+                'only a rotor of kind = "jeffcott" has a disc apart from its journal',
+                key=f"orbit.{name}.on",
+            )
+
+
+_NEEDS = {
+    OrbitKind.UNBALANCE: 'needs an unbalance; add unbalance = "500 g*mm" to [rotor], and leave '
+    "unbalance = false out of [orbit]",
+    OrbitKind.STEP: 'needs a step; add step = { force = ["500 N", "0 N"], start = "0.1 s" }',
+    OrbitKind.HARMONIC: "needs a harmonic force; add "
+    'harmonic = { force = ["500 N", "0 N"], frequency = "50 Hz" }',
+    OrbitKind.RUN_UP: "needs a rising speed such as "
+    'speed = { start = "3000 rpm", stop = "15000 rpm", duration = "2 s" }',
+    OrbitKind.COAST_DOWN: "needs a falling speed such as "
+    'speed = { start = "15000 rpm", stop = "3000 rpm", duration = "2 s" }',
+    OrbitKind.BASE_MOTION: "needs a motion of the base; add "
+    'base_motion = { displacement = ["10 um", "0 um"], frequency = "50 Hz" }, or a base_shock',
+}
+
+
+def _check_kind(orbit: OrbitSettings, kinds: list[OrbitKind]) -> None:
+    """Refuse a kind that lacks what it needs."""
+    if orbit.kind is not OrbitKind.FREE_DECAY:
+        if orbit.kind not in kinds:
+            raise InputError(_NEEDS[orbit.kind], key="orbit.kind")
+        return
+    if not any((*orbit.initial_displacement, *orbit.initial_velocity)):
+        raise InputError(
+            "would stay at rest; write for example "
+            'initial_displacement = ["1 um", "0 um"], which kind = "free_decay" needs',
+            key="orbit.initial_displacement",
+        )
+    if kinds[0] in (OrbitKind.RUN_UP, OrbitKind.COAST_DOWN):
+        raise InputError("needs one speed, not a ramp", key="orbit.kind")
+
+
+def _check_actuator(orbit: OrbitSettings, scenario: Scenario) -> None:
+    """Refuse what the feedback, designed about one equilibrium at one speed, does not fit."""
+    rotor_kind = "" if scenario.rotor is None else scenario.rotor.kind
+    film, linear = scenario.film, orbit.force is OrbitForce.LINEAR
+    free = film.inception is Inception.FREE
+    fixed = film.cavitation in (Cavitation.REYNOLDS, Cavitation.HALF_SOMMERFELD)
+    isothermal = set(scenario.thermal_models) == {ThermalModel.ISOTHERMAL}
+    plain = scenario.bearing.is_plain and scenario.bearing.is_symmetric
+    # from the third on: what `rotorsim.orbit.can_be_mapped` asks of a film
+    kept = 'with force = "film" needs a film whose force comes from a map: '
+    for fits, message in (
+        (
+            not orbit.is_ramped,
+            'needs one speed, not a ramp; write for example speed = "15000 rpm" in [orbit]',
+        ),
+        (rotor_kind == "rigid", 'needs a rotor of kind = "rigid"'),
+        (
+            orbit.static_load,
+            "needs the static load, about whose equilibrium it acts; remove static_load",
+        ),
+        (linear or free, f'{kept}inception = "free" in [film]; or take force = "linear"'),
+        (
+            linear or fixed,
+            f'{kept}cavitation = "reynolds" or "half_sommerfeld"; or take force = "linear"',
+        ),
+        (
+            linear or isothermal,
+            f'{kept}models = ["isothermal"] in [thermal]; or take force = "linear"',
+        ),
+        (
+            linear or plain,
+            f'{kept}a plain bore without grooves, lobes and tilt; or take force = "linear"',
+        ),
+    ):
+        if not fits:
+            raise InputError(message, key="orbit.actuator")
