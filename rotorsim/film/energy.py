@@ -219,7 +219,7 @@ def _sweep(
         after = i + 1 if i < n - 1 else 0
         for s in range(m):
             j = axial_order[s]
-            if fixed[i, j]:
+            if fixed[i, j] or conductance[i, j] == 0.0:  # a groove, or not a drop of oil
                 continue
             south, north = max(j - 1, 0), min(j + 1, m - 1)
             # Weights of the extrapolation from centre to the face downstream, where this cell and

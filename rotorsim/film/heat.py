@@ -264,6 +264,22 @@ def heat_balance(
     )
 
 
+def loss_per_degree(problem: FilmProblem, energy: EnergyProblem, walls: Walls) -> float:
+    """Return the heat that a film one degree warmer loses to oil and bush, estimated [W/K].
+
+    Oil that comes round brings its heat back through the inlets.
+    """
+    warmer = np.ones(energy.layers.pressure_share.shape)
+    back = np.zeros((4, *problem.mesh.shape))
+    if problem.thermal.inlet is InletModel.MIXING:
+        back = _mixed(problem, energy, warmer, back)
+    oil = _enthalpy_out(energy, warmer, back, np.stack([warmer, warmer]))
+    to_bush = 0.0
+    if not walls.bush.insulated:
+        to_bush = 4.0 * float(energy.conductance.sum()) / warmer.shape[2]
+    return max(energy.heat_capacity * oil, 0.0) + to_bush
+
+
 def _enthalpy_out(
     energy: EnergyProblem, temperature: Array, inlet_temperature: Array, leaving: Array
 ) -> float:

@@ -35,6 +35,7 @@ from .heat import (
     energy_problem,
     heat_balance,
     inlet_temperatures,
+    loss_per_degree,
 )
 from .layers import layer_integrals
 from .problem import FilmProblem, FilmState, film_state
@@ -70,6 +71,8 @@ UNREACHABLE_STEPS = 8
 """Iterations that the search may lie at the end of its range before it is given up."""
 BEYOND_LIMITS_STEPS = 25
 """Iterations in a row that may lead beyond the temperature limits before the film is given up."""
+LOSS_EVERY = 3
+"""Iterations from one estimate of the film's loss of heat to the next."""
 POSITION_WEIGHT = 30.0
 """[K]; a clearance's change of position counts like this change of the whole temperature field."""
 TEMPERATURE_LIMITS = (150.0, 650.0)
@@ -247,6 +250,8 @@ class _Progress:
     release: int = FREEZE_AFTER
     stuck: int = 0
     beyond: int = 0
+    loss: float = math.inf
+    """Heat lost to oil and bush per degree of the film [W/K], where the shaft's answer needs it."""
 
     def record(self, step: _Step, *, unreachable: bool) -> None:
         """Take notice of a step."""
@@ -255,7 +260,10 @@ class _Progress:
         # While the heat still moves much, coarser meshes guess the full cells better than the past.
         self.guess = full if step.residual < FAR_RESIDUAL else None
         self.stuck = self.stuck + 1 if unreachable else 0
-        self.beyond = self.beyond + 1 if _beyond_limits(step.mapped.temperature) else 0
+        reach = TEMPERATURE_LIMITS[1] - TEMPERATURE_LIMITS[0]
+        trapped = dissipated_power(step.energy) > reach * self.loss
+        beyond = trapped or _beyond_limits(step.mapped.temperature)
+        self.beyond = self.beyond + 1 if beyond else 0
         if self.kept is None and len(self.history) >= self.release and self._stagnates():
             self.kept = full
 
@@ -308,7 +316,10 @@ def _apply(
     _, leaving = march(
         energy, viscosity, bounds, inlet, temperature, passes=passes, leaving=leaving
     )
-    bush, shaft = FilmContact.bush(energy, temperature), FilmContact.shaft(energy, temperature)
+    if walls.shaft.floats and len(progress.history) % LOSS_EVERY == 0:
+        progress.loss = loss_per_degree(problem, energy, walls)
+    bush = FilmContact.bush(energy, temperature)
+    shaft = FilmContact.shaft(energy, temperature, progress.loss)
     mapped = Heat(
         temperature,
         walls.bush.respond(heat.bush, bush),

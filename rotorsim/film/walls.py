@@ -9,6 +9,7 @@ the step's length, and the film's iteration does not see the difference.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -40,12 +41,15 @@ class FilmContact:
         Layers across the film; the wall lies half a layer from the first centre.
     area : (n, m) array
         [m2]
+    elsewhere : float
+        Heat that the film loses to oil and other wall per degree that it warms [W/K], estimated.
     """
 
     film: Array
     bulk: Array
     layers: int
     area: Array
+    elsewhere: float = math.inf
 
     @classmethod
     def bush(cls, energy: EnergyProblem, temperature: Array) -> FilmContact:
@@ -53,14 +57,16 @@ class FilmContact:
         return cls._of(energy, temperature[:, :, 0])
 
     @classmethod
-    def shaft(cls, energy: EnergyProblem, temperature: Array) -> FilmContact:
+    def shaft(
+        cls, energy: EnergyProblem, temperature: Array, elsewhere: float = math.inf
+    ) -> FilmContact:
         """Return the contact with the shaft."""
-        return cls._of(energy, temperature[:, :, -1])
+        return cls._of(energy, temperature[:, :, -1], elsewhere)
 
     @classmethod
-    def _of(cls, energy: EnergyProblem, film: Array) -> FilmContact:
-        layers = energy.layers.pressure_share.shape[2]
-        return cls(film, energy.conductance / layers, layers, energy.dx[:, None] * energy.dy)
+    def _of(cls, energy: EnergyProblem, film: Array, elsewhere: float = math.inf) -> FilmContact:
+        layers, area = energy.layers.pressure_share.shape[2], energy.dx[:, None] * energy.dy
+        return cls(film, energy.conductance / layers, layers, area, elsewhere)
 
     def heat(self, wall: Array | float) -> Array:
         """Return the heat that each cell gives to a wall at temperature `wall` [W], (n, m)."""
@@ -77,10 +83,13 @@ class Wall(ABC):
         First guess of the surface temperature, the truth where it is given [K].
     insulated : bool
         Whether no heat passes anywhere.
+    floats : bool
+        Whether one temperature answers the film's net heat: then `FilmContact.elsewhere` counts.
     """
 
     first: float
     insulated: ClassVar[bool] = False
+    floats: ClassVar[bool] = False
 
     def start(self, shape: tuple[int, ...]) -> Array:
         """Return the surface temperature to begin with [K]."""
@@ -127,6 +136,8 @@ class InsulatedWall(Wall):
 class IsothermalShaft(Wall):
     """A shaft of one temperature that takes no net heat: it turns fast against its inertia."""
 
+    floats = True
+
     def respond(self, temperature: Array, contact: FilmContact, /) -> Array:
         """Return the temperature at which the film's net heat would vanish."""
         conductance = self.exchange(contact)
@@ -135,8 +146,15 @@ class IsothermalShaft(Wall):
         return temperature + self.heat(temperature, contact).sum() / conductance
 
     def exchange(self, contact: FilmContact, /) -> float:
-        """Return a few times k A/h, a developing film's; only the convergence depends on it."""
-        return float(8.0 * contact.bulk.sum())
+        """Return how the net heat follows the shaft; only the convergence depends on it.
+
+        Into the film, a developing film's few times k A/h, and from there elsewhere, in series. Not
+        less than a part of the first, since a film that is not yet settled answers at once.
+        """
+        into = float(8.0 * contact.bulk.sum())
+        if not (into > 0.0 and contact.elsewhere > 0.0):
+            return into
+        return max(1.0 / (1.0 / into + 1.0 / contact.elsewhere), 0.05 * into)
 
 
 @dataclass(frozen=True)
