@@ -187,7 +187,9 @@ def solve_thermal_film(
         step = _apply(problem, walls, displacement, heat, progress, leaving)
         leaving = step.leaving
         target, off = (displacement, 0.0) if move is None else move(step.state)
-        progress.record(step, unreachable=move is not None and move.unreachable)
+        changed = progress.record(step, unreachable=move is not None and move.unreachable)
+        if changed:  # what the mixer remembers belongs to another map
+            mixer.forget()
         stop = False
         if proceed is not None and max(step.residual, off) < ROUGH_TOLERANCE:
             stop, proceed = not proceed(step.state.displacement), None
@@ -253,8 +255,8 @@ class _Progress:
     loss: float = math.inf
     """Heat lost to oil and bush per degree of the film [W/K], where the shaft's answer needs it."""
 
-    def record(self, step: _Step, *, unreachable: bool) -> None:
-        """Take notice of a step."""
+    def record(self, step: _Step, *, unreachable: bool) -> bool:
+        """Take notice of a step; return whether states are kept or released from now on."""
         full = step.state.solution.full
         self.history.append(step.residual)
         # While the heat still moves much, coarser meshes guess the full cells better than the past.
@@ -264,8 +266,13 @@ class _Progress:
         trapped = dissipated_power(step.energy) > reach * self.loss
         beyond = trapped or _beyond_limits(step.mapped.temperature)
         self.beyond = self.beyond + 1 if beyond else 0
-        if self.kept is None and len(self.history) >= self.release and self._stagnates():
-            self.kept = full
+        if self.kept is None:
+            if len(self.history) >= self.release and self._stagnates():
+                self.kept = full
+                return True
+        elif step.residual < ROUGH_TOLERANCE and self.broken_rupture(step):
+            return True
+        return False
 
     def broken_rupture(self, step: _Step) -> str:
         """Say how many cells break the rupture condition if too many; their states are released."""

@@ -159,10 +159,15 @@ class IsothermalShaft(Wall):
 
 @dataclass(frozen=True)
 class ConductingBush(Wall):
-    """A bush that conducts the heat from its bore to surroundings at `ambient` [K]."""
+    """A bush that conducts the heat from its bore to surroundings at `ambient` [K].
+
+    `nusselt` estimates how many times k A/h the film's heat follows the bore; only the convergence
+    depends on it.
+    """
 
     operator: BushOperator
     ambient: float
+    nusselt: float
 
     @classmethod
     def of(cls, problem: FilmProblem) -> ConductingBush:
@@ -181,7 +186,10 @@ class ConductingBush(Wall):
                 f"bush_outer_radius={1.5 * bearing.journal_radius:.3g}, or another bush model",
                 key="bearing.bush_outer_radius",
             )
-        transfer = thermal.bush_heat_transfer
+        transfer, oil = thermal.bush_heat_transfer, problem.lubricant
+        capacity = oil.density * oil.specific_heat * problem.surface_speed
+        peclet = capacity * bearing.radial_clearance**2 / bearing.journal_radius
+        peclet /= oil.thermal_conductivity
         operator = kept_operator(
             mesh.theta_faces.tobytes(),
             mesh.y_faces.tobytes(),
@@ -191,7 +199,9 @@ class ConductingBush(Wall):
             transfer,
             (0.0 if mesh.half else transfer, transfer),
         )
-        return cls(thermal.supply_temperature, operator, thermal.ambient_temperature)
+        # A thermal layer that grows along the bore (Leveque); conduction across the whole film.
+        nusselt = max(2.0, 1.6 * peclet ** (1.0 / 3.0))
+        return cls(thermal.supply_temperature, operator, thermal.ambient_temperature, nusselt)
 
     def respond(self, temperature: Array, contact: FilmContact, /) -> Array:
         """Return the bore's temperature that answers the film's heat at the old one."""
@@ -200,8 +210,8 @@ class ConductingBush(Wall):
         return _conducted(self.operator, temperature, flux, conductance, self.ambient)
 
     def exchange(self, contact: FilmContact, /) -> Array:
-        """Return a developing film's few times k A/h of every cell, as for the shaft."""
-        return 4.0 * contact.bulk
+        """Return `nusselt` times k A/h of every cell, at most what the first half layer passes."""
+        return min(self.nusselt, 2.0 * contact.layers) * contact.bulk
 
 
 @dataclass(frozen=True)
