@@ -200,7 +200,7 @@ class ConductingBush(Wall):
             (0.0 if mesh.half else transfer, transfer),
         )
         # A thermal layer that grows along the bore (Leveque); conduction across the whole film.
-        nusselt = max(2.0, 1.6 * peclet ** (1.0 / 3.0))
+        nusselt = max(3.0, 1.6 * peclet ** (1.0 / 3.0))
         return cls(thermal.supply_temperature, operator, thermal.ambient_temperature, nusselt)
 
     def respond(self, temperature: Array, contact: FilmContact, /) -> Array:

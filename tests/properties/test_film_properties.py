@@ -18,7 +18,7 @@ from film_cases import (
 )
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from tolerances import HEAT_BALANCE, MASS_BALANCE, SIMILARITY
+from tolerances import MASS_BALANCE, SIMILARITY
 
 from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.bearing.solve import solve_case
@@ -27,7 +27,18 @@ from rotorsim.film.layers import isoviscous_layers
 from rotorsim.film.linearization import linearize
 from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
-from rotorsim.model import Bearing, BushModel, Groove, InletModel, LoadTarget, ShaftModel
+from rotorsim.film.thd import BALANCE_ROUNDING, BALANCE_TOLERANCE
+from rotorsim.model import (
+    Bearing,
+    BushModel,
+    Cavitation,
+    ExponentialViscosity,
+    Groove,
+    InletModel,
+    LoadTarget,
+    Lubricant,
+    ShaftModel,
+)
 from rotorsim.status import SolveStatus
 
 MESH = (48, 12)
@@ -230,43 +241,58 @@ def _no_nan(point: OperatingPoint) -> bool:
 
 thermal_conditions = st.fixed_dictionaries(
     {
-        "inlet": st.sampled_from([InletModel.FRESH, InletModel.MIXING]),
-        "bush": st.sampled_from([BushModel.AMBIENT, BushModel.INSULATED]),
+        "inlet": st.sampled_from(InletModel),
+        "bush": st.sampled_from(BushModel),
         "shaft": st.sampled_from([ShaftModel.AMBIENT, ShaftModel.INSULATED]),
+        "hot_oil_carry_over": st.sampled_from([1.0, 0.6]),
         "ambient_temperature": st.floats(280.0, 330.0),
         "supply_temperature": st.floats(300.0, 330.0),
     }
 )
 
 
-@settings(few, max_examples=40)
+@settings(few, max_examples=80)
 @given(
-    eps=st.floats(0.1, 0.8),
-    speed=st.floats(20.0, 1600.0),
-    clearance=st.floats(60e-6, 200e-6),
+    eps=st.floats(0.05, 0.9),
+    log_rpm=st.floats(1.0, 5.0),
+    clearance=st.floats(40e-6, 200e-6),
     bore=bores,
-    cavitation=st.sampled_from(["reynolds", "jfo"]),
+    cavitation=st.sampled_from(Cavitation),
+    beta=st.sampled_from([0.0, 0.02, 0.034]),
     conditions=thermal_conditions,
 )
-def test_heat_balance_of_whatever_converges(eps, speed, clearance, bore, cavitation, conditions):
-    """Dissipation is accounted for within 0.5 %; what does not converge says so, and why."""
+def test_heat_balance_of_whatever_converges(
+    eps, log_rpm, clearance, bore, cavitation, beta, conditions
+):
+    """Dissipation is accounted for within 0.1 %; what does not converge says so, and why.
+
+    At common speeds and with fresh oil films do converge.
+    """
     eps = 0.45 * eps if bore == "elliptical" else eps
     case = thermal_case(
         eps,
         mesh=(40, 8, 8),
-        bearing=Bearing(RADIUS, 0.08, clearance, **BORES[bore]),
+        bearing=Bearing(RADIUS, 0.08, clearance, bush_outer_radius=0.08, **BORES[bore]),
+        oil=Lubricant(ExponentialViscosity(0.0277, 313.15, beta), 860.0, 2000.0, 0.13),
         cavitation=cavitation,
         **conditions,
     )
-    point, _ = solve_case(case, speed)
+    point, _ = solve_case(case, 10.0**log_rpm * math.pi / 30.0)
     if not point.converged:
         assert point.message
+        common = 2.5 < log_rpm < 3.7 and cavitation in (Cavitation.REYNOLDS, Cavitation.JFO)
+        assert not (common and case.thermal.inlet is InletModel.FRESH), point.message
         return
     assert _no_nan(point)
-    assert abs(point.heat_balance.imbalance) < HEAT_BALANCE
+    heat = point.heat_balance
+    slack = BALANCE_TOLERANCE * heat.dissipation + BALANCE_ROUNDING * heat.turnover
+    assert abs(heat.remainder) <= slack
+    if case.thermal.shaft is ShaftModel.INSULATED:
+        assert abs(heat.to_shaft) < 2.0 * slack
     assert point.max_temperature >= point.mean_temperature
     coolest = min(conditions["ambient_temperature"], conditions["supply_temperature"])
     assert point.mean_temperature > coolest - 1e-6
+    assert point.heat_imbalance == heat.imbalance
 
 
 @few
