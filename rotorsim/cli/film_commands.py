@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..errors import TableError
+from ..status import SolveStatus
 from .inputs import (
     check_file,
     check_workers,
@@ -165,7 +167,11 @@ def computed_table(
     workers: int | None = None,
     scheduler: str | None = None,
 ) -> tuple[list[OperatingPoint], CoefficientTable]:
-    """Points and table of `scenario`, saved to `path`; a journal next to it until then."""
+    """Points and table of `scenario`, saved to `path`; a journal next to it until then.
+
+    While points have failed the journal stays, to be resumed from, and so does an older table
+    without such points.
+    """
     from ..study.journal import Journal
     from ..study.sweep import as_table, sweep_points
     from .progress import film_progress
@@ -178,7 +184,7 @@ def computed_table(
     if before:
         output.note(f"resuming: {before} points are in {journal}")
     with (
-        cluster(scheduler) as executor,
+        cluster(scheduler, output) as executor,
         film_progress(output, len(cases) * len(scenario.speeds)) as progress,
     ):
         output.kept.append(f"finished points are in {journal}; the same command resumes there")
@@ -191,10 +197,31 @@ def computed_table(
             resume=journal,
         )
     made = as_table(points, scenario)
+    failed = sum(point.status is SolveStatus.FAILED for point in points)
+    if failed and _is_without_failures(path):
+        output.warn(
+            f"{failed} points failed: {path} is left as it was, and the same command tries them "
+            f"again; the others are kept in {journal}"
+        )
+        return points, made
     made.save(path)
-    journal.unlink(missing_ok=True)
+    if failed:
+        output.warn(f"{failed} points failed: the same command tries them again")
+    else:
+        journal.unlink(missing_ok=True)
     output.kept[-1] = f"the table is in {path}"
     return points, made
+
+
+def _is_without_failures(path: Path) -> bool:
+    """Whether there is a table of which no point failed."""
+    from ..bearing.table import CoefficientTable
+
+    try:
+        status = CoefficientTable.load(path).dataset["status"].values
+    except TableError:
+        return False
+    return not (status == str(SolveStatus.FAILED)).any()
 
 
 def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:

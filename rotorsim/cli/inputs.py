@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 import math
+import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryFile
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 
@@ -138,27 +140,58 @@ def given_table(
     return table
 
 
+_PATIENCE = 8.0
+"""Time after which a scheduler counts as dead, and the lack of workers is said [s]."""
+
+
 @contextmanager
-def cluster(address: str | None) -> Iterator[Executor | None]:
+def cluster(address: str | None, output: Output) -> Iterator[Executor | None]:
     """Executor on the Dask scheduler at `address`; None where there is no address."""
     if address is None:
         yield None
         return
     try:
         client_class = import_module("distributed").Client
+        import_module("dask").config.set({"distributed.comm.timeouts.connect": f"{_PATIENCE:g} s"})
     except ImportError:
         raise InputError(
             'needs the extra "cluster": python -m pip install "rotorsim[cluster]"',
             key="--scheduler",
         ) from None
+    # What Dask says of lost connections, tracebacks included, is said in one line here.
+    for name in tuple(logging.root.manager.loggerDict):
+        if name.partition(".")[0] in ("distributed", "tornado", "asyncio"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     try:
-        client = client_class(address, timeout="10s")
+        client = client_class(address, timeout=f"{_PATIENCE:g} s")
     except (OSError, ValueError, TimeoutError) as error:
         raise InputError(
             f"no scheduler answers ({error})", key="--scheduler", value=address
         ) from None
-    with client:
+    with client, _workers_awaited(client, address, output):
         yield client.get_executor()
+
+
+@contextmanager
+def _workers_awaited(client: Any, address: str, output: Output) -> Iterator[None]:
+    """Say it when the scheduler has no worker for some time; one may still come."""
+    ended = threading.Event()
+
+    def look() -> None:
+        said = False
+        while not ended.wait(_PATIENCE):
+            missing = not client.scheduler_info().get("workers")
+            if missing and not said:
+                output.warn(f"{address} has no worker; one is started by: dask worker {address}")
+            said = missing
+
+    watch = threading.Thread(target=look, daemon=True)
+    watch.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        watch.join(1.0)
 
 
 def table_path(scenario: Path, folder: Path) -> Path:

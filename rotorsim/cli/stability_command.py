@@ -230,7 +230,7 @@ def _plane(
         return plane, str(table.dataset.attrs.get("title", source.stem))
     scenario = load_scenario(source)
     with (
-        cluster(work.scheduler) as executor,
+        cluster(work.scheduler, work.output) as executor,
         film_progress(work.output, _film_count(scenario, axes)) as progress,
     ):
         plane = plane_of_scenario(
@@ -267,7 +267,10 @@ def _show_tolerances(
     extra = [name for name in held if name not in ("speed", "radial_clearance")]
     if extra:
         raise InputError("goes with a map; set it in the scenario", key=extra[0])
-    with cluster(work.scheduler) as executor, _sample_progress(work.output) as progress:
+    with (
+        cluster(work.scheduler, work.output) as executor,
+        _sample_progress(work.output) as progress,
+    ):
         study = study_tolerances(
             scenario,
             wanted_tolerances(scenario, texts, samples),

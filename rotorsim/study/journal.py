@@ -2,36 +2,37 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import os
+import socket
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from ..atomic import write_text
 from ..bearing.operating_point import OperatingPoint, point_from_dict, point_to_dict
 from ..errors import InputError
+from ..file_kinds import read_bytes
 from ..model import Case
 from ..status import SolveStatus
 
-FORMAT = 1
-_MODEL_SOURCES = (
-    "film",
-    "model",
-    "bearing/solve.py",
-    "bearing/operating_point.py",
-    "bearing/whirl.py",
-)
+FORMAT = 2
+_MAX_BYTES = 2_000_000_000
+_SUM = "sha256"
+"""Key of a line's checksum, over all of its other entries."""
+_MODEL_SOURCES = ("film", "model", "bearing", "compiled.py")
 
 
 class Journal:
     """Append-only store of finished operating points.
 
     A line is written whole and flushed to the disk before the next group starts, so that a kill
-    loses what is being computed and nothing else; a line that a kill cut short is dropped when the
-    journal is opened again. Points are found by everything that fixes them (the case and the
-    speed), so that a scenario may gain speeds or change its rotor and still reuse them. A journal
-    of another program version is started afresh.
+    loses what is being computed and nothing else; a line that a kill cut short, or that does not
+    match its checksum, is dropped when the journal is opened again. Points are found by everything
+    that fixes them (the case and the speed), so that a scenario may gain speeds or change its rotor
+    and still reuse them. A journal of another program version is started afresh.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ class Journal:
             write_text(self.path, self._whole)
             self._whole = None
         with self.path.open("a", encoding="utf-8", newline="\n") as stream:
-            stream.write(json.dumps(line) + "\n")
+            stream.write(json.dumps({**line, _SUM: _checksum(line)}) + "\n")
             stream.flush()
             os.fsync(stream.fileno())
         self._points.update({(digest, point.speed): point for point in finished})
@@ -96,19 +97,15 @@ class Journal:
         return points
 
     def _lines(self) -> list[str]:
-        try:
-            text = self.path.read_text(encoding="utf-8", errors="replace")
-        except FileNotFoundError:
+        if not os.path.lexists(self.path):
             return []
-        except OSError as error:
-            raise InputError(
-                f"the journal cannot be read ({error.strerror})", source=self.path
-            ) from error
-        return text.splitlines()
+        return read_bytes(self.path, _MAX_BYTES).decode("utf-8", errors="replace").splitlines()
 
 
 def _points_of(line: str) -> dict[tuple[str, float], OperatingPoint]:
     record = _parse(line)
+    if record.pop(_SUM, None) != _checksum(record):
+        return {}
     try:
         entries = [point_from_dict(entry) for entry in record["points"]]
         return {(record["case"], point.speed): point for point in entries}
@@ -116,7 +113,11 @@ def _points_of(line: str) -> dict[tuple[str, float], OperatingPoint]:
         return {}
 
 
-def _parse(line: str) -> dict:
+def _checksum(record: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(record).encode()).hexdigest()[:24]
+
+
+def _parse(line: str) -> dict[str, Any]:
     try:
         record = json.loads(line)
     except ValueError:
@@ -129,8 +130,9 @@ def case_digest(case: Case) -> str:
     return hashlib.sha256(repr(case).encode()).hexdigest()[:24]
 
 
+@functools.cache
 def model_digest() -> str:
-    """Fingerprint of the program that computes a point: its source files.
+    """Fingerprint of the program that computes a point: its source files, read once.
 
     Stricter than a version number, which a developer forgets to raise.
     """
@@ -143,3 +145,19 @@ def model_digest() -> str:
             digest.update(file.relative_to(root).as_posix().encode())
             digest.update(file.read_bytes())
     return digest.hexdigest()[:24]
+
+
+def refuse_other_sources(wanted: str) -> None:
+    """Refuse to compute for a program of another `model_digest`: its numbers might differ.
+
+    Raises
+    ------
+    InputError
+        It is another one than this.
+    """
+    if wanted != model_digest():
+        raise InputError(
+            "a worker has other sources of rotorsim than this computer, so its results might "
+            "differ; install the same there and start it anew",
+            key="--scheduler", value=f"{socket.gethostname()}: {model_digest()}",
+        )  # fmt: skip

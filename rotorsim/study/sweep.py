@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    wait,
+)
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +21,7 @@ from ..arguments import refuse_path
 from ..bearing.operating_point import OperatingPoint, failed_point
 from ..errors import InputError
 from ..model import Case
-from .journal import Journal
+from .journal import Journal, model_digest, refuse_other_sources
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
@@ -29,12 +36,22 @@ class Chunk:
     """Place of the case in the sweep."""
     case: Case
     speeds: tuple[float, ...]
+    model: str = ""
+    """`model_digest` of the program that wants the points; empty within one process."""
 
 
 def solve_chunk(
     chunk: Chunk, solve_case: Callable[..., Any] | None = None
 ) -> tuple[OperatingPoint, ...]:
-    """Points of one chunk; this is what travels to the workers."""
+    """Points of one chunk; this is what travels to the workers.
+
+    Raises
+    ------
+    InputError
+        The chunk was made by another program than the one that is installed here.
+    """
+    if chunk.model:
+        refuse_other_sources(chunk.model)
     return tuple(along_speed(chunk, solve_case))
 
 
@@ -66,6 +83,8 @@ def result_or_failure(
         return future.result()
     except InputError:
         raise
+    except CancelledError:
+        message = "the executor gave it up: is the scheduler still there?"
     except BrokenExecutor as error:
         message = f"the worker process was lost ({error})"
     except Exception as error:
@@ -229,7 +248,11 @@ def _computed(
 def _on_executor(
     chunks: Sequence[Chunk], executor: Executor, solve_case: Callable[..., Any] | None
 ) -> Iterator[tuple[Chunk, tuple[OperatingPoint, ...]]]:
-    running = {executor.submit(solve_chunk, chunk, solve_case): chunk for chunk in chunks}
+    digest = model_digest()  # elsewhere the program may be another one
+    running = {
+        executor.submit(solve_chunk, replace(chunk, model=digest), solve_case): chunk
+        for chunk in chunks
+    }
     try:
         while running:
             finished, _ = wait(running, return_when=FIRST_COMPLETED)

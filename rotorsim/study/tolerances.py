@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from ..model import Case, LoadTarget, MeshSize
 from ..rotor import Rotor
 from ..rows import RPM
 from .axes import changed, with_mesh
+from .journal import model_digest, refuse_other_sources
 
 if TYPE_CHECKING:
     from ..bearing.interpolation import CoefficientInterpolator
@@ -325,7 +326,7 @@ def _mapper(
     if executor is not None:
         if workers is not None:
             raise InputError("not together with an executor", key="workers", value=workers)
-        return executor.map
+        return lambda function, samples: executor.map(_Elsewhere(function), samples)
     count = available_cores() if workers is None else workers
     if count < 1:
         raise InputError("must be 1 or more", key="workers", value=workers)
@@ -342,6 +343,18 @@ def _mapper(
         return [result for batch in done for result in batch]
 
     return mapped
+
+
+@dataclass(frozen=True)
+class _Elsewhere:
+    """The function for workers that may have another program, which they refuse to use."""
+
+    function: Callable
+    model: str = field(default_factory=model_digest)
+
+    def __call__(self, sample: Any) -> Any:
+        refuse_other_sources(self.model)
+        return self.function(sample)
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,20 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
+from concurrent.futures import Executor, Future
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
 from command_line import CommandLine, strict
 from scenario_texts import SMALL
 
+import rotorsim
+
 ROOT = Path(__file__).parents[2]
+PACKAGE = Path(rotorsim.__file__).parents[1]
 TINY = f"""\
 title = "tiny"
 {SMALL}revolutions = 4
@@ -212,7 +218,9 @@ def test_damaged_and_newer_tables_are_refused_with_a_reason(how, words, nonsense
 
 KILLING = """
 import json, os, random, signal, sys, time
+from concurrent.futures import Executor, Future
 from pathlib import Path
+from typing import ClassVar
 from rotorsim.study.journal import Journal
 from rotorsim.files.scenario import Scenario
 from rotorsim.study.sweep import sweep_points, tabulate
@@ -285,7 +293,7 @@ def started(folder: Path, *words: str, **options) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "rotorsim", *words], cwd=folder, text=True,
         stdout=options.pop("stdout", subprocess.PIPE), stderr=subprocess.PIPE,
-        env={**os.environ, "PYTHONPATH": str(ROOT)}, **options,
+        env={**os.environ, "PYTHONPATH": str(PACKAGE)}, **options,
     )  # fmt: skip
 
 
@@ -315,7 +323,7 @@ def test_a_process_that_is_asked_to_end_leaves_no_temporary_file(name, code, tmp
     )
     process = subprocess.Popen(
         [sys.executable, "slow.py"], cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        text=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
+        text=True, env={**os.environ, "PYTHONPATH": str(PACKAGE)},
     )  # fmt: skip
     assert process.stdout is not None
     assert process.stdout.readline() == "writing\n"
@@ -360,10 +368,102 @@ def test_a_file_size_limit_ends_with_a_message_and_the_old_table(good_table, tmp
         (tmp_path / name).write_text("old")
         done = subprocess.run(
             [sys.executable, "-c", limited], cwd=tmp_path, capture_output=True, text=True,
-            env={**os.environ, "PYTHONPATH": str(ROOT)}, timeout=60,
+            env={**os.environ, "PYTHONPATH": str(PACKAGE)}, timeout=60,
         )  # fmt: skip
         assert done.returncode == 2, done.stderr
         assert done.stderr.startswith(f"error: {name}: ")
         assert "File too large" in done.stderr
         assert (tmp_path / name).read_text() == "old"
     assert sorted(os.listdir(tmp_path / "out")) == ["good.mat", "good.nc"]
+
+
+def test_failed_points_cost_neither_the_journal_nor_an_older_table(
+    here: CommandLine, tmp_path, monkeypatch
+):
+    """A point fails once: the good table stays, and the next run computes that point alone."""
+    import rotorsim.bearing.solve as film
+
+    (tmp_path / "quick.toml").write_text(QUICK, encoding="utf-8")
+    table, journal = tmp_path / "coefficients/quick.nc", tmp_path / "coefficients/quick.nc.journal"
+    whole, solved = film.solve_case, []
+
+    def failing(case, speed, *, initial=None):
+        solved.append(speed)
+        if speed > 700.0 and len(solved) == 2:
+            raise RuntimeError("worker gone")
+        return whole(case, speed, initial=initial)
+
+    monkeypatch.setattr(film, "solve_case", failing)
+    words = ("table", "quick.toml", "--workers", "1", "--json")
+    done = here(*words)  # no older table: what there is is written
+    assert done.returncode == 1
+    assert "1 points failed: the same command tries them again" in done.stderr
+    assert journal.exists()
+    assert strict(done.stdout)["counts"] == {"converged": 1, "failed": 1}
+    done = here(*words)
+    assert done.returncode == 0, done.stderr
+    assert len(solved) == 3
+    assert not journal.exists()
+    good = table.read_bytes()
+    solved.clear()
+    done = here(*words)
+    assert done.returncode == 1
+    assert f"{Path('coefficients/quick.nc')} is left as it was" in done.stderr
+    assert table.read_bytes() == good
+    assert journal.exists()
+
+
+@pytest.fixture
+def dask(monkeypatch):
+    """Stand-ins for Dask's packages: a scheduler without workers, which one can lose."""
+    import types
+
+    class Client:
+        workers: ClassVar[dict[str, str]] = {}
+
+        def __init__(self, address, timeout):
+            if address.endswith(":1"):
+                raise OSError(f"Timed out trying to connect to {address} after {timeout}")
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            return None
+
+        def scheduler_info(self):
+            return {"workers": self.workers}
+
+        def get_executor(self):
+            return Lost()
+
+    class Lost(Executor):
+        def submit(self, fn, /, *args, **kwargs):
+            time.sleep(0.3)
+            future: Future = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    settings: dict[str, str] = {}
+    fakes = {
+        "distributed": types.SimpleNamespace(Client=Client),
+        "dask": types.SimpleNamespace(config=types.SimpleNamespace(set=settings.update)),
+    }
+    for name, fake in fakes.items():
+        monkeypatch.setitem(sys.modules, name, fake)
+    monkeypatch.setattr("rotorsim.cli.inputs._PATIENCE", 0.1)
+
+
+@pytest.mark.usefixtures("dask")
+def test_schedulers_that_are_dead_lost_or_without_workers_are_told_apart(
+    here: CommandLine, tmp_path
+):
+    (tmp_path / "quick.toml").write_text(QUICK, encoding="utf-8")
+    done = here("table", "quick.toml", "--scheduler", "tcp://127.0.0.1:1")
+    assert done.returncode == 2
+    assert "error: --scheduler: no scheduler answers (Timed out" in done.stderr
+    done = here("table", "quick.toml", "--scheduler", "tcp://127.0.0.1:2")
+    assert done.returncode == 1
+    assert "tcp://127.0.0.1:2 has no worker; one is started by: dask worker" in done.stderr
+    assert "is the scheduler still there?" in done.stderr

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+import rotorsim
+
+PACKAGE = Path(rotorsim.__file__).parents[1]
 CALLED = (
     "from rotorsim.compiled import compiled\nSCALE = 2.0\n@compiled()\ndef called(x): return {}\n"
 )
@@ -26,7 +28,7 @@ RUN = (
 def run(folder: Path, code: str = RUN, **environment: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", code],
-        env={**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{ROOT}", **environment},
+        env={**os.environ, "PYTHONPATH": f"{folder}{os.pathsep}{PACKAGE}", **environment},
         capture_output=True, text=True, check=True, cwd=folder,
     )  # fmt: skip
 

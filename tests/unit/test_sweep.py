@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import rotorsim
 from rotorsim.bearing.operating_point import (
     OperatingPoint,
     point_from_dict,
@@ -38,7 +39,7 @@ from rotorsim.status import SolveStatus, Stability
 from rotorsim.study.journal import Journal
 from rotorsim.study.sweep import CHUNK, failed_point, sweep_points
 
-ROOT = Path(__file__).parents[2]
+PACKAGE = Path(rotorsim.__file__).parents[1]
 SPEEDS = [100.0 * (step + 1) for step in range(12)]
 
 
@@ -295,7 +296,7 @@ def script(tmp_path):
         (tmp_path / "script.py").write_text(SCRIPT.format(journal=str(tmp_path / "journal")))
         return subprocess.Popen(
             [sys.executable, str(tmp_path / "script.py")],
-            env={**os.environ, "PYTHONPATH": str(tmp_path)},
+            env={**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{PACKAGE}"},
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -359,3 +360,41 @@ def alive(pid: int) -> bool:
     except OSError:
         return False
     return stat.rsplit(")", 1)[1].split()[0] != "Z"
+
+
+# What may be damaged, or another program's
+
+
+@pytest.mark.parametrize("old", ['"load": 0.01', '"speed": 100.0', '"status": "converged"'])
+def test_a_changed_digit_in_the_journal_is_noticed(tmp_path, old):
+    path = tmp_path / "j"
+    for speed in SPEEDS[:2]:
+        Journal(path).append(CASES[0], [fake_point(CASES[0], speed)])
+    text = path.read_text()
+    assert old in text
+    new = {"0.01": "0.02", "100.0": "900.0", "converged": "diverging"}
+    path.write_text(
+        text.replace(old, next(old.replace(a, b) for a, b in new.items() if a in old), 1)
+    )
+    kept = Journal(path)
+    assert len(kept) == 1
+    assert kept.find(CASES[0], SPEEDS[1]) is not None
+
+
+class Sends(Executor):
+    """Sends work through pickle to a place where the sources have another digest."""
+
+    def submit(self, fn, /, *args, **kwargs):
+        future: Future = Future()
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("rotorsim.study.journal.model_digest", lambda: "another")
+            try:
+                future.set_result(fn(*args, **kwargs))
+            except Exception as error:
+                future.set_exception(error)
+        return future
+
+
+def test_workers_with_other_sources_are_noticed():
+    with pytest.raises(InputError, match="a worker has other sources of rotorsim"):
+        sweep_points(CASES, SPEEDS, executor=Sends(), solve_case=FakeSolver())
