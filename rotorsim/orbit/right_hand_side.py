@@ -71,9 +71,7 @@ def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries]:
     ]  # fmt: skip
     structure: tuple[Array, ...] = (
         np.asarray(np.stack(matrices), dtype=float),
-        np.column_stack(
-            [np.abs(rotor.unbalance), np.angle(rotor.unbalance), 1.0 * rotor.first_unknown]
-        ),
+        np.asarray(np.column_stack(planes), dtype=float),
         problem.schedule.knots,
         shapes,
         times,
