@@ -1,8 +1,6 @@
-"""State matrices and their eigenvalues, each with its own accuracy."""
+"""State matrices as plain arrays."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,12 +8,9 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 _SINGULAR = 1e12
 """Condition number from which the damping of massless unknowns counts as singular."""
-_ROUNDINGS = 10.0
-"""Size of the error of the eigenvalue solver and of the matrices, in roundings of their norm."""
 
 
 def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
@@ -111,32 +106,3 @@ def first_order(mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> tu
     b[..., n:, :] = np.linalg.solve(inertia, push[..., heavy, :])
     a[~known], b[~known] = np.nan, np.nan
     return a, b
-
-
-def eigenvalues_with_accuracy(a: Array) -> tuple[ComplexArray, ComplexArray, Array]:
-    """Eigenvalues of one state matrix, its right eigenvectors, and each eigenvalue's accuracy.
-
-    Returns
-    -------
-    eigenvalues : (k,) complex array
-    vectors : (k, k) complex array
-        Columns, of any length.
-    accuracy : (k,) array
-        Estimated bound of the absolute error.
-
-    Notes
-    -----
-    After balancing, the error of an eigenvalue is some roundings of the matrix' norm over the
-    cosine between its left and its right eigenvector (Golub & Van Loan, Matrix Computations,
-    7.2.2). A free direction is a double eigenvalue zero with one eigenvector: the computed cosine
-    is then of the size of the square root of the rounding, and so is the accuracy.
-    """
-    from scipy.linalg import eig, matrix_balance
-
-    balanced, (scale, _) = matrix_balance(a, permute=False, separate=True)
-    found: Any = eig(balanced, left=True, right=True, check_finite=False)
-    values, left, right = found
-    cosine = np.abs(np.sum(left.conj() * right, axis=0))
-    rounding = _ROUNDINGS * np.finfo(float).eps * np.linalg.norm(balanced)
-    accuracy = rounding / np.maximum(cosine, np.finfo(float).eps)
-    return values.astype(complex), (scale[:, None] * right).astype(complex), accuracy

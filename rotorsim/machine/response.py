@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
+from ..threads import on_one_blas_thread
 from .machine import Machine
 
 Array = NDArray[np.float64]
@@ -46,6 +47,7 @@ class UnbalanceResponse:
         return 0.5 * (np.abs(x + 1j * y) + np.abs(np.conj(x) + 1j * np.conj(y)))
 
 
+@on_one_blas_thread
 def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> UnbalanceResponse:
     """Steady response to the rotor's unbalance.
 

@@ -241,6 +241,10 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
         mass[2 * i + 1, 2 * i + 1] += disc.transverse_inertia
         gyroscopic[2 * i + 1, 2 * i + 1] += disc.polar_inertia
         names[i] = disc.name or names[i]
+    # Quadrature leaves them symmetric but for rounding.
+    mass, stiffness, gyroscopic, geometric = (
+        0.5 * (part + part.T) for part in (mass, stiffness, gyroscopic, geometric)
+    )
     damping = beam.internal_damping * stiffness
     both = _BothPlanes(nodes.size, 1.0 if beam.clockwise else -1.0)
     carried = [nearest_node(nodes, place) for place in places] or [0, nodes.size - 1]

@@ -219,8 +219,9 @@ def eigenvalue_paths(scenario: Scenario, table: CoefficientTable) -> list[Eigenv
     In the orbit's clearance; without an orbit in the first one.
     """
     from ..machine.machine import Machine
-    from ..machine.modes import known_speeds, modes, threshold_speeds
+    from ..machine.modes import known_speeds, modes
     from ..machine.support import TableSupport
+    from ..machine.thresholds import threshold_speeds
     from .recording import EigenvaluePath
 
     rotor, settings = scenario.rotor, scenario.orbit

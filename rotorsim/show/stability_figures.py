@@ -96,13 +96,18 @@ def tolerance_figure(study: ToleranceStudy, title: str = "") -> Figure:
 def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
     """Root locus over the loop gain, Bode diagram of the receptance, and the runs in time."""
     from ..machine.control import receptance
-    from ..machine.modes import track_modes
+    from ..machine.spectrum import MatrixSpectrum
+    from ..machine.tracking import track_modes
     from .figures import OrbitPicture, bode_plot, orbit_plot, root_locus
 
     system, gain = study.system, study.feedback.gain
     heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
     share = np.linspace(0.0, 1.5, 61)
-    locus = track_modes(lambda f: np.asarray(system.A) - f * np.asarray(system.B) @ gain, share)
+
+    def closed_loop(factor: float) -> np.ndarray:
+        return np.asarray(system.A) - factor * np.asarray(system.B) @ gain
+
+    locus = track_modes(MatrixSpectrum(closed_loop), share)
     yield (
         "root_locus",
         root_locus(locus.parameter, locus.eigenvalues, "share of the gain [-]", heading),

@@ -9,9 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..machine.branches import Modes
 from ..machine.machine import Machine
-from ..machine.modes import Modes, ThresholdSpeed, known_speeds, modes, spectrum, threshold_speeds
+from ..machine.modes import eigenvalues_over_speed, known_speeds, modes
 from ..machine.support import TableSupport
+from ..machine.thresholds import ThresholdSpeed, threshold_speeds
 from ..rotor import Rotor
 from ..rows import number
 
@@ -202,7 +204,7 @@ def _eigenvalues(
 
     NaN where a support has no coefficients.
     """
-    values, accuracy = spectrum(machine, speeds)
+    values, accuracy = eigenvalues_over_speed(machine, speeds)
     undamped = np.abs(values.real) <= accuracy
     order = np.lexsort((-values.real, undamped), axis=1)
     return np.take_along_axis(values, order, axis=1), np.take_along_axis(undamped, order, axis=1)

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..machine.machine import Machine
-from ..machine.modes import ThresholdSpeed, modes, threshold_speeds
+from ..machine.modes import modes
 from ..machine.support import ConstantSupport, TableSupport
+from ..machine.thresholds import ThresholdSpeed, threshold_speeds
 from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..model import Case, LoadTarget, MeshSize
 from ..rotor import Rotor

@@ -181,7 +181,7 @@ OK = case("07/ok.csv")
 
 def threshold_rpm(path: Path) -> float:
     from rotorsim.machine.machine import Machine
-    from rotorsim.machine.modes import threshold_speeds
+    from rotorsim.machine.thresholds import threshold_speeds
     from rotorsim.machine.support import TableSupport
     from rotorsim.rotor import Rotor
 

@@ -10,8 +10,8 @@ from command_line import strict
 
 import rotorsim as rs
 from rotorsim.machine.machine import Machine
-from rotorsim.machine.modes import threshold_speeds
 from rotorsim.machine.support import TableSupport
+from rotorsim.machine.thresholds import threshold_speeds
 from rotorsim.rotor import Rotor
 
 ROOT = Path(__file__).parents[2]

@@ -14,8 +14,8 @@ from rotorsim.errors import InputError, ScenarioError
 from rotorsim.files.scenario import Scenario
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.map import stability_map
-from rotorsim.machine.modes import threshold_speeds
 from rotorsim.machine.support import TableSupport
+from rotorsim.machine.thresholds import threshold_speeds
 from rotorsim.model import LoadTarget, MeshSize
 from rotorsim.model.tolerances import ToleranceSettings, parse_spread
 from rotorsim.rotor import Rotor

@@ -8,13 +8,11 @@ from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.matrices import first_order
-from rotorsim.machine.modes import (
-    find_thresholds,
-    modes,
-    threshold_speeds,
-    track_modes,
-)
+from rotorsim.machine.modes import modes
+from rotorsim.machine.spectrum import MatrixSpectrum
 from rotorsim.machine.support import TableSupport
+from rotorsim.machine.thresholds import find_thresholds, threshold_speeds
+from rotorsim.machine.tracking import track_modes
 from rotorsim.rotor import Rotor
 
 
@@ -25,7 +23,7 @@ def crossing(p):
 
 def test_branches_pass_through_a_crossing():
     p = np.linspace(0.5, 1.5, 12)
-    found = track_modes(crossing, p).oscillating()
+    found = track_modes(MatrixSpectrum(crossing), p).oscillating()
     assert found.smooth.all()
     assert found.eigenvalues.shape == (12, 2)
     fixed = np.flatnonzero(np.abs(found.eigenvalues[0].imag - 1.0) < 0.01)[0]
@@ -48,7 +46,7 @@ def gyroscopic(omega):
 
 def test_whirl_direction_and_campbell_branches():
     speeds = np.linspace(0.1, 3.0, 30)
-    found = track_modes(gyroscopic, speeds).oscillating()
+    found = track_modes(MatrixSpectrum(gyroscopic), speeds).oscillating()
     direction = found.whirl_direction()
     forward = int(direction[-1].argmax())
     assert np.allclose(direction[:, forward], 1.0, atol=1e-10)
@@ -60,7 +58,7 @@ def test_whirl_direction_and_campbell_branches():
 
 def test_overdamped_modes_do_not_oscillate():
     found = track_modes(
-        lambda p: first_order(np.eye(2), 3.0 * np.eye(2), np.diag([1.0, p]))[0],
+        MatrixSpectrum(lambda p: first_order(np.eye(2), 3.0 * np.eye(2), np.diag([1.0, p]))[0]),
         [0.5, 0.6],
     )
     assert np.isnan(found.logarithmic_decrement).all()
@@ -68,7 +66,7 @@ def test_overdamped_modes_do_not_oscillate():
     assert np.allclose(found.whirl_direction(), 0.0)
     assert found.oscillating().eigenvalues.shape == (2, 0)
     with pytest.raises(InputError, match="ascend"):
-        track_modes(crossing, [1.0, 0.5])
+        track_modes(MatrixSpectrum(crossing), [1.0, 0.5])
 
 
 def film(speed):
@@ -112,7 +110,7 @@ def test_both_directions_and_gaps_are_seen():
         rate = np.sin(s) if s < 5.0 or s > 5.5 else np.nan
         return first_order(np.eye(1), [[-rate]], np.eye(1))[0]
 
-    found = find_thresholds(matrix, np.linspace(1.0, 9.0, 33))
+    found = find_thresholds(MatrixSpectrum(matrix), np.linspace(1.0, 9.0, 33))
     assert [t.becomes_unstable for t in found] == [False, True]
     assert [t.speed for t in found] == pytest.approx([np.pi, 2.0 * np.pi], rel=1e-12)
     assert found[0].whirl_frequency_ratio == pytest.approx(1.0 / np.pi)

@@ -8,8 +8,9 @@ from rotorsim.bearing.whirl import flexible_critical_mass, rigid_threshold
 from rotorsim.errors import InputError
 from rotorsim.files.rotors import load_rotor
 from rotorsim.machine.machine import Machine
-from rotorsim.machine.modes import modes, threshold_speeds
+from rotorsim.machine.modes import modes
 from rotorsim.machine.support import TableSupport
+from rotorsim.machine.thresholds import threshold_speeds
 from rotorsim.rotor import Rotor
 
 NAMES = [f"{a}{i}{j} [{u}]" for a, u in (("k", "N/m"), ("c", "N s/m")) for i in "xy" for j in "xy"]

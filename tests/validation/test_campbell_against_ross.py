@@ -13,8 +13,9 @@ import pytest
 
 from rotorsim.bearing.table import CoefficientTable
 from rotorsim.machine.machine import Machine
-from rotorsim.machine.modes import modes, threshold_speeds
+from rotorsim.machine.modes import modes
 from rotorsim.machine.support import TableSupport
+from rotorsim.machine.thresholds import threshold_speeds
 from rotorsim.rotor import Rotor
 
 ROOT = Path(__file__).parents[2]

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rotorsim.machine.branches import Verdict
 from rotorsim.machine.machine import Machine
-from rotorsim.machine.modes import Verdict, modes
+from rotorsim.machine.modes import modes
 from rotorsim.machine.support import ConstantSupport
 from rotorsim.model.shaft import Disc, Material, Section
 from rotorsim.rotor import Beam, beam_rotor

@@ -1,0 +1,220 @@
+"""Where a machine changes its verdict, and its critical speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..threads import on_one_blas_thread
+from .branches import Modes
+from .machine import Machine
+from .modes import machine_spectrum, modes
+from .spectrum import Eigenmodes, Spectrum
+
+Array = NDArray[np.float64]
+
+CRITICAL_DAMPING = 0.5**0.5
+"""Damping ratio from which an unbalance response has no peak: no critical speed."""
+
+
+@dataclass(frozen=True)
+class ThresholdSpeed:
+    """Where the machine changes its verdict.
+
+    Attributes
+    ----------
+    speed : float
+        [rad/s]
+    whirl_frequency : float
+        Of the mode that crosses [rad/s]; 0 for a static divergence.
+    whirl_frequency_ratio : float
+    becomes_unstable : bool
+        With rising speed; False: it becomes stable.
+    """
+
+    speed: float
+    whirl_frequency: float
+    whirl_frequency_ratio: float
+    becomes_unstable: bool
+
+
+@on_one_blas_thread
+def find_thresholds(spectrum: Spectrum, speeds: Sequence[float] | Array) -> list[ThresholdSpeed]:
+    """Speeds at which the least stable eigenvalue crosses the imaginary axis.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        Modes at a speed [rad/s]; None marks one without coefficients.
+    speeds : sequence of float
+        Ascending; one crossing is found between two neighbours whose verdicts differ.
+
+    Returns
+    -------
+    list of ThresholdSpeed
+        Ascending, speed to a relative 1e-13 or as far as the eigenvalues are accurate. Empty: one
+        verdict everywhere.
+
+    Notes
+    -----
+    Modes whose real part is below their own accuracy are neither stable nor unstable, and count
+    nowhere.
+    """
+    from scipy.optimize import brentq
+
+    def rate(omega: float) -> float:
+        return _leading(spectrum, omega).real
+
+    points = [(float(s), rate(float(s))) for s in speeds]
+    # At a point without any damped mode there is no verdict to change.
+    points = [point for point in points if point[1] != 0.0]
+    tolerance: dict[str, Any] = {
+        "xtol": 1e-13 * max((p[0] for p in points), default=1.0), "rtol": 1e-13,
+    }  # fmt: skip
+    found = []
+    for (first, low), (last, high) in pairwise(points):
+        if not low * high < 0.0:
+            continue
+        root: Any = brentq(rate, first, last, **tolerance)
+        found.append(_threshold(spectrum, float(root), (first, last), low < 0.0))
+    return found
+
+
+def _threshold(
+    spectrum: Spectrum, root: float, interval: tuple[float, float], rising: bool
+) -> ThresholdSpeed:
+    """Threshold near `root`, which the band of undamped modes may have shifted a little."""
+    from scipy.optimize import brentq
+
+    side = 1.0 if rising else -1.0
+    distances = abs(root) * np.geomspace(1e-12, 1e-3, 10)
+    ends = [np.clip([root - d, root + d], *interval) for d in distances]
+    outer = (_leading(spectrum, float(end[1] if rising else end[0])) for end in ends)
+    crossing = next((value for value in outer if value.real > 0.0), 0j)
+
+    def nearest(omega: float) -> complex:
+        found = spectrum(omega)
+        values = np.array([np.nan]) if found is None else found.values
+        return complex(values[np.abs(values - crossing).argmin()])
+
+    for low, high in ends:
+        if side * nearest(low).real < 0.0 < side * nearest(high).real:
+            tolerance: dict[str, Any] = {"xtol": 1e-14 * root, "rtol": 1e-14}
+            found: Any = brentq(lambda s: nearest(s).real, low, high, **tolerance)
+            root = float(found)
+            break
+    whirl = abs(nearest(root).imag)
+    return ThresholdSpeed(root, whirl, whirl / root, rising)
+
+
+def _leading(spectrum: Spectrum, speed: float) -> complex:
+    """Eigenvalue of largest real part of the damped modes; 0 without any, NaN if unknown."""
+    found = spectrum(speed)
+    return complex(np.nan, np.nan) if found is None else found.leading
+
+
+@on_one_blas_thread
+def threshold_speeds(machine: Machine, subdivisions: int = 8) -> list[ThresholdSpeed]:
+    """Threshold speeds of a machine on its supports' interpolated tables.
+
+    Parameters
+    ----------
+    machine : Machine
+    subdivisions : int
+        Points looked at in every interval of the tables.
+    """
+    speeds = subdivided(machine.speeds, subdivisions)
+    return find_thresholds(machine_spectrum(machine, speeds), speeds)
+
+
+def subdivided(knots: Array, parts: int) -> Array:
+    """Every interval between ascending knots cut into `parts`."""
+    if not knots.size:
+        return knots
+    cut = np.arange(parts) / parts
+    return np.append((knots[:-1, None] + np.diff(knots)[:, None] * cut).ravel(), knots[-1])
+
+
+@dataclass(frozen=True)
+class CriticalSpeed:
+    """Where a damped natural frequency equals the shaft speed.
+
+    Attributes
+    ----------
+    speed : float
+        [rad/s]
+    whirl : str
+        ``forward``, ``backward`` or ``mixed``.
+    damping_ratio : float
+    branch : int
+        Of the modes that were searched.
+    """
+
+    speed: float
+    whirl: str
+    damping_ratio: float
+    branch: int
+
+
+@on_one_blas_thread
+def critical_speeds(
+    machine: Machine, found: Modes | None = None, order: float = 1.0
+) -> list[CriticalSpeed]:
+    """Speeds at which a mode's damped frequency is `order` times the speed, ascending.
+
+    Parameters
+    ----------
+    machine : Machine
+    found : Modes, optional
+        Of this machine over speed, as dense as branches should be followed.
+    order : float
+
+    Notes
+    -----
+    One of each conjugate pair; modes so much damped (ratio above 0.707) that an unbalance response
+    has no peak are left out. Crossings are refined to 1e-10 on the supports' interpolated tables.
+    """
+    branches = (modes(machine) if found is None else found).oscillating()
+    at = machine_spectrum(machine, branches.parameter)
+    result = []
+    offset = branches.damped_frequency - order * branches.parameter[:, None]
+    for i, k in np.argwhere(offset[:-1] * offset[1:] <= 0.0):
+        if offset[i + 1, k] == 0.0 and i + 2 < offset.shape[0]:
+            continue  # counted as the beginning of the next interval
+        crossing = _refined_crossing(at, branches, int(i), int(k), order)
+        if 0.0 <= crossing.damping_ratio[0, 0] < CRITICAL_DAMPING or crossing.growth_rate[0, 0] > 0:
+            one = replace(crossing, planes=machine.rotor.planes)
+            speed, ratio = float(one.parameter[0]), float(one.damping_ratio[0, 0])
+            result.append(CriticalSpeed(speed, str(one.whirl[0, 0]), ratio, int(k)))
+    return sorted(result, key=lambda one: one.speed)
+
+
+def _refined_crossing(at: Spectrum, branches: Modes, i: int, k: int, order: float) -> Modes:
+    """Mode at the speed between points i and i + 1 where branch k crosses."""
+    from scipy.optimize import brentq
+
+    low, high = (float(s) for s in branches.parameter[i : i + 2])
+    ends = branches.eigenvalues[[i, i + 1], k], branches.shapes[[i, i + 1], k]
+
+    def mode(speed: float) -> Eigenmodes:
+        """That mode between the two points: nearest in eigenvalue and shape."""
+        t = (speed - low) / (high - low)
+        state = at(speed)
+        assert state is not None  # between two speeds at which it is known
+        value = ends[0][0] + t * (ends[0][1] - ends[0][0])
+        mac = np.abs(state.shapes.conj() @ ends[1].T) ** 2 @ np.array([1.0 - t, t])
+        cost = np.abs(state.values - value) / abs(value) + 1.0 - mac
+        return state.taken(np.array([cost.argmin()]))
+
+    tolerance: dict[str, Any] = {"xtol": 1e-12 * high, "rtol": 1e-12}
+    root: Any = brentq(lambda s: abs(mode(s).values[0].imag) - order * s, low, high, **tolerance)
+    one = mode(float(root))
+    return Modes(
+        np.array([float(root)]), one.values[None], one.accuracy[None], one.shapes[None],
+        np.array([True]),
+    )  # fmt: skip

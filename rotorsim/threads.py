@@ -1,0 +1,32 @@
+"""Small matrices on one thread: more threads make them slower, much so where cores are shared."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, wraps
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
+
+P = ParamSpec("P")
+Result = TypeVar("Result")
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    import scipy.linalg  # noqa: F401 - it brings a BLAS of its own, which must be loaded by now
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
+
+
+def on_one_blas_thread(function: Callable[P, Result]) -> Callable[P, Result]:
+    """Run a function with the BLAS held to one thread."""
+
+    @wraps(function)
+    def held(*args: P.args, **kwargs: P.kwargs) -> Result:
+        with _controller().limit(limits=1, user_api="blas"):
+            return function(*args, **kwargs)
+
+    return held
