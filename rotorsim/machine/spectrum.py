@@ -158,9 +158,9 @@ def lowest_eigenmodes(
     n = mass.shape[0]
     diagonal = np.abs(np.diag(mass))
     heavy = diagonal > 0.0
-    inert = np.flatnonzero(heavy)
     scale = 1.0 / np.sqrt(np.where(heavy, diagonal, 1.0))
-    highest = np.sqrt(np.linalg.norm((scale[:, None] * scale * stiffness)[np.ix_(inert, inert)]))
+    scaled = (scale[:, None] * scale * stiffness)[heavy][:, heavy]
+    highest = np.sqrt(np.linalg.norm(scaled))
     rate = max(speed, _SHIFT * float(highest))
     light = np.abs(np.diag(stiffness)) + rate * np.abs(np.diag(damping))
     scale = np.where(heavy, scale, rate / np.sqrt(np.where(light > 0.0, light, 1.0)))
