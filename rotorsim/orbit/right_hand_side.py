@@ -69,6 +69,7 @@ def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries]:
     matrices = [
         inverse, rotor.damping, rotor.stiffness, rotor.gyroscopic, rotor.circulatory,
     ]  # fmt: skip
+    planes = [np.abs(rotor.unbalance), np.angle(rotor.unbalance), rotor.first_unknown]
     structure: tuple[Array, ...] = (
         np.asarray(np.stack(matrices), dtype=float),
         np.asarray(np.column_stack(planes), dtype=float),

@@ -181,8 +181,8 @@ OK = case("07/ok.csv")
 
 def threshold_rpm(path: Path) -> float:
     from rotorsim.machine.machine import Machine
-    from rotorsim.machine.thresholds import threshold_speeds
     from rotorsim.machine.support import TableSupport
+    from rotorsim.machine.thresholds import threshold_speeds
     from rotorsim.rotor import Rotor
 
     table = TableSupport(CoefficientTable.from_csv(path).interpolator())
