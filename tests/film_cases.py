@@ -54,11 +54,16 @@ def isothermal_case(
     ruptured_friction: str = "whole",
     grooves: tuple[Groove, ...] = (),
     arcs: tuple[Arc, ...] = (),
-    tilt: tuple[float, float] = (0.0, 0.0),
+    misalignment: tuple[float, float] = (0.0, 0.0),
 ) -> Case:
     """Isoviscous film; `target` is an eccentricity ratio or a load."""
     bearing = Bearing(
-        radius, 2.0 * radius * length_to_diameter, clearance, grooves=grooves, arcs=arcs, tilt=tilt
+        radius,
+        2.0 * radius * length_to_diameter,
+        clearance,
+        grooves=grooves,
+        arcs=arcs,
+        misalignment=misalignment,
     )
     return Case(
         bearing=bearing,

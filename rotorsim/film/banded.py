@@ -1,4 +1,4 @@
-"""Symmetric positive definite systems on the film's cells, factored as band matrices.
+"""Symmetric positive definite systems on the film's cells, factored as band matrices by LAPACK.
 
 Numbered along the axis first, a film that is cut open somewhere around the bearing has a band as
 wide as its axial cells; a film that runs all the way round is folded (0, n-1, 1, n-2, ...), which
@@ -8,15 +8,20 @@ doubles the band and keeps it exact. Columns in which nothing is solved are left
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import get_lapack_funcs
+from threadpoolctl import ThreadpoolController
 
 from .kernels import kernel
 from .operator import FilmOperator
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+
+_factorise, _solve = get_lapack_funcs(("pbtrf", "pbtrs"), dtype=np.float64)
 
 
 class NoFilmError(ArithmeticError):
@@ -29,10 +34,18 @@ class SingularFilmError(ArithmeticError):
 
 @dataclass(frozen=True)
 class FilmFactor:
-    """Cholesky factor of the operator on the active cells; `solve` may be called repeatedly."""
+    """Cholesky factor of the operator on the active cells; `solve` may be called repeatedly.
+
+    Attributes
+    ----------
+    factor : (width + 1, cells) array
+        Diagonals of the lower factor, as LAPACK keeps them.
+    order : array
+        Columns of cells in the order of the band.
+    active : (n, m) bool array
+    """
 
     factor: Array
-    """One row for each column of the matrix: its diagonal and what lies below."""
     order: NDArray[np.int64]
     active: Flags
 
@@ -40,8 +53,13 @@ class FilmFactor:
         """Solve for (..., n, m) right-hand sides; inactive cells give 0."""
         n, m = self.active.shape
         flat = np.asarray(right, dtype=float).reshape(-1, n, m)
+        chosen = self.active[self.order]
+        packed = np.where(chosen, flat[:, self.order, :], 0.0).reshape(flat.shape[0], -1).T
+        solved, info = _solve(self.factor, packed, lower=1, overwrite_b=1)
+        if info != 0:
+            raise SingularFilmError(f"band solve failed ({info})")
         result = np.zeros_like(flat)
-        _solve_band(self.factor, self.order, self.active, flat, result)
+        result[:, self.order, :] = solved.T.reshape(flat.shape[0], -1, m)
         return result.reshape(np.shape(right))
 
 
@@ -55,10 +73,20 @@ def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
     position = np.full(n, -1, dtype=np.int64)
     position[order] = np.arange(order.size)
     _fill_band(operator.conductance, operator.interior, active, order, position, band)
-    pivot = _cholesky(band)
-    if pivot:
-        raise SingularFilmError(f"the film's matrix is not positive definite (pivot {pivot})")
-    return FilmFactor(factor=band, order=order, active=active)
+    if not np.isfinite(band.sum()):
+        raise SingularFilmError("the film's matrix is not finite")
+    # On so narrow a band several threads only wait for each other.
+    with _threads().limit(limits=1, user_api="blas"):
+        factor, info = _factorise(band.T, lower=1, overwrite_ab=1)
+    if info != 0:
+        raise SingularFilmError(f"the film's matrix is not positive definite (pivot {info})")
+    return FilmFactor(factor=factor, order=order, active=active)
+
+
+@lru_cache(maxsize=1)
+def _threads() -> ThreadpoolController:
+    """Thread pools of the linear algebra libraries, looked up once."""
+    return ThreadpoolController()
 
 
 def column_order(interior: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
@@ -99,74 +127,3 @@ def _fill_band(conductance, interior, active, order, position, band):
                 band[column, (position[before] - c) * m] -= conductance[0, i, j]
             if interior[1, i, j] and active[after, j] and position[after] > c:
                 band[column, (position[after] - c) * m] -= conductance[1, i, j]
-
-
-@kernel
-def _cholesky(band):
-    """Factor in place; 0, or the number of the pivot that is not positive.
-
-    Written out, since the library's routine splits such narrow bands among threads and then waits
-    for them longest of all where every core is at work.
-    """
-    size, width = band.shape[0], band.shape[1] - 1
-    c = 0
-    while c < size:
-        # Two columns at a time: what lies to the right is then read and written half as often.
-        first = band[c]
-        below = min(width, size - 1 - c)
-        if not first[0] > 0.0:
-            return c + 1
-        root = np.sqrt(first[0])
-        first[0] = root
-        for r in range(1, below + 1):
-            first[r] /= root
-        if c + 1 == size:
-            break
-        second = band[c + 1]
-        under = min(width, size - 2 - c)
-        factor = first[1] if below >= 1 else 0.0
-        for r in range(1, below + 1):
-            second[r - 1] -= factor * first[r]
-        if not second[0] > 0.0:
-            return c + 2
-        root = np.sqrt(second[0])
-        second[0] = root
-        for r in range(1, under + 1):
-            second[r] /= root
-        for j in range(2, under + 2):
-            left = first[j] if j <= below else 0.0
-            right = second[j - 1]
-            if left != 0.0 or right != 0.0:
-                target = band[c + j]
-                for r in range(j, below + 1):
-                    target[r - j] -= left * first[r] + right * second[r - 1]
-                for r in range(max(j, below + 1), under + 2):
-                    target[r - j] -= right * second[r - 1]
-        c += 2
-    return 0
-
-
-@kernel
-def _solve_band(band, order, active, right, result):
-    size, width = band.shape[0], band.shape[1] - 1
-    m = active.shape[1]
-    x = np.empty(size)
-    for q in range(right.shape[0]):
-        for c in range(order.size):
-            for j in range(m):
-                x[c * m + j] = right[q, order[c], j] if active[order[c], j] else 0.0
-        for c in range(size):
-            value = x[c] / band[c, 0]
-            x[c] = value
-            if value != 0.0:
-                for r in range(1, min(width, size - 1 - c) + 1):
-                    x[c + r] -= value * band[c, r]
-        for c in range(size - 1, -1, -1):
-            value = x[c]
-            for r in range(1, min(width, size - 1 - c) + 1):
-                value -= x[c + r] * band[c, r]
-            x[c] = value / band[c, 0]
-        for c in range(order.size):
-            for j in range(m):
-                if active[order[c], j]:
-                    result[q, order[c], j] = x[c * m + j]

@@ -85,7 +85,7 @@ class ForceField:
         edges = [edge for groove in bearing.grooves for edge in groove_edges(groove)]
         theta = np.append(theta[~in_full_groove(bearing, theta)], edges)
         normals = np.stack([np.cos(theta), np.sin(theta)])
-        aside = np.abs(np.array(bearing.tilt) @ normals) * 0.5 * bearing.length
+        aside = np.abs(np.array(bearing.misalignment) @ normals) * 0.5 * bearing.length
         room = bearing.radial_clearance + bore_offset(bearing, theta) - aside
         return cls(replace(case, film=replace(case.film, mesh=coarse)), speed, normals, room)
 

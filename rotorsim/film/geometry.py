@@ -151,8 +151,8 @@ def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
         displacements = translations(bearing, mesh)
     rest = np.repeat(bore[[0, 1, 2, 0, 0]][:, :, None], mesh.shape[1], axis=2)
     if not bearing.is_symmetric:
-        tilt = np.array([-bearing.tilt[1], bearing.tilt[0]])
-        rest += np.tensordot(tilt, rotations(bearing, mesh).shapes, axes=1)
+        slopes = np.array([-bearing.misalignment[1], bearing.misalignment[0]])
+        rest += np.tensordot(slopes, rotations(bearing, mesh).shapes, axes=1)
     return FilmGeometry(rest, displacements, mesh.supply < 0, multiplicity=mesh.multiplicity)
 
 

@@ -43,7 +43,7 @@ MAX_POSITION_STEPS = 60
 PATIENCE = 12
 """Steps after which each must reduce the force residual."""
 FRAME_TOLERANCE = 1e-3
-"""Angle [rad] between a tilted plain film's frame and its line of centres."""
+"""Angle [rad] between a misaligned plain film's frame and its line of centres."""
 MAX_MESHES = 8
 """Times that the mesh may be graded anew for the position found."""
 
@@ -248,7 +248,7 @@ def _load_line(state: FilmState) -> float:
 
 
 def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
-    """Any other film is solved in the load frame; a tilted plain one near its centre's."""
+    """Any other film is solved in the load frame; a misaligned plain one near its centre's."""
     position = initial.position if initial else _first_position(case)
     warm, effort = initial, _Effort()
     while True:
@@ -286,9 +286,10 @@ def _inside(problem: FilmProblem, search: Search, position: Position) -> Positio
             return nearer
         if isinstance(search, AttitudeSearch):
             raise NoFilmError(
-                "the journal touches the bore at this eccentricity: lobes and tilt leave less room"
+                "the journal touches the bore at this eccentricity: lobes and misalignment leave "
+                "less room"
             )
-    raise NoFilmError("the tilted journal touches the bore even when it is centred")
+    raise NoFilmError("the misaligned journal touches the bore even when it is centred")
 
 
 def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | AttitudeSearch:
@@ -311,7 +312,7 @@ def _first_position(case: Case) -> Position:
 
 
 def _frame_angle(bearing: Bearing, position: Position) -> float:
-    """0, or the line of centres' angle for a tilted plain bearing: its film begins opposite."""
+    """0, or the line of centres' angle for a misaligned plain bearing: its film begins opposite."""
     return math.atan2(position[1], position[0]) if bearing.is_plain else 0.0
 
 

@@ -178,8 +178,8 @@ class Bearing:
         Empty: those of `profile`; without one, one concentric 360 degree bore.
     bush_outer_radius : float or None
         [m]; needed for bush conduction only.
-    tilt : tuple of float
-        Misalignment: slope of the journal's axis against the bearing's in the x-y and y planes,
+    misalignment : tuple of float
+        Slope of the journal's axis against the bearing's in the x-y and y planes,
         d(e_x)/dy and d(e_y)/dy [rad], y axial from the mid-plane.
     roughness : float
         Combined surface roughness [m]; a film thinner than this is reported. 0: not checked.
@@ -196,7 +196,7 @@ class Bearing:
     grooves: Annotated[tuple[Groove, ...], Key("groove")] = ()
     arcs: Annotated[tuple[Arc, ...], Key("arc")] = ()
     bush_outer_radius: Length | None = None
-    tilt: tuple[Slope, Slope] = (0.0, 0.0)
+    misalignment: Annotated[tuple[Slope, Slope], Key("tilt")] = (0.0, 0.0)
     roughness: Annotated[float, Quantity("length", "1 um", "not_negative")] = 0.0
     pads: Annotated[tuple[Pad, ...], NOT_IN_FILES] = ()
     profile: BearingProfile | None = field(default=None, compare=False)
@@ -292,7 +292,7 @@ class Bearing:
     @property
     def is_symmetric(self) -> bool:
         """Both axial halves are mirror images."""
-        return self.tilt == (0.0, 0.0)
+        return self.misalignment == (0.0, 0.0)
 
     def turned(self, angle: float) -> Bearing:
         """The same bearing with every feature moved ahead by `angle` [rad]."""
@@ -307,8 +307,8 @@ class Bearing:
             grooves=tuple(replace(g, center=g.center + angle) for g in self.grooves),
             arcs=tuple(replace(a, start=a.start + angle, end=a.end + angle) for a in self.arcs),
             pads=tuple(replace(p, pivot_angle=p.pivot_angle + angle) for p in self.pads),
-            tilt=(
-                self.tilt[0] * cos - self.tilt[1] * sin,
-                self.tilt[0] * sin + self.tilt[1] * cos,
+            misalignment=(
+                self.misalignment[0] * cos - self.misalignment[1] * sin,
+                self.misalignment[0] * sin + self.misalignment[1] * cos,
             ),
         )

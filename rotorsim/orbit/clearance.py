@@ -50,7 +50,7 @@ def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
     towards = ray @ normal.T
     reach = np.full(count, np.inf)
     for end in _ends(bearing):
-        gap = bore - normal @ (np.asarray(bearing.tilt) * end)
+        gap = bore - normal @ (np.asarray(bearing.misalignment) * end)
         # Along a ray each film falls linearly with the distance: the first to reach zero decides.
         with np.errstate(divide="ignore"):
             distance = np.where(towards > 0.0, gap / np.maximum(towards, 1e-12), np.inf)
@@ -87,7 +87,7 @@ def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
     cos, sin = np.cos(theta), np.sin(theta)
     least = np.full(np.shape(x), np.inf)
     for end in _ends(bearing):
-        ex, ey = x + bearing.tilt[0] * end, y + bearing.tilt[1] * end
+        ex, ey = x + bearing.misalignment[0] * end, y + bearing.misalignment[1] * end
         for start in range(0, least.size, _BLOCK):
             part = slice(start, start + _BLOCK)
             h = bore - np.multiply.outer(ex[part], cos) - np.multiply.outer(ey[part], sin)

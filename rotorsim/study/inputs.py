@@ -75,8 +75,10 @@ def _bearing(scenario: Scenario) -> Rows:
         )
     if not bearing.grooves and not bearing.arcs:
         rows.append(Row("bore", "plain, 360°"))
-    if any(bearing.tilt):
-        rows.append(Row("tilt", ", ".join(f"{number(angle * 1e3)} mrad" for angle in bearing.tilt)))
+    if any(bearing.misalignment):
+        rows.append(
+            Row("tilt", ", ".join(f"{number(angle * 1e3)} mrad" for angle in bearing.misalignment))
+        )
     if bearing.roughness:
         rows.append(Row("roughness", _micrometres(bearing.roughness)))
     return rows

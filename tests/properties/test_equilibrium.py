@@ -64,7 +64,7 @@ def random_case(random: np.random.Generator) -> Case:
         inception=inception,
         grooves=grooves,
         arcs=arcs,
-        tilt=misalignment,
+        misalignment=misalignment,
     )
 
 
@@ -160,7 +160,11 @@ def test_journal_may_stand_in_the_opening_of_a_groove():
 def test_a_misaligned_journal_touches_before_it_carries_a_heavy_load():
     """Along the rim of the clearance the film's force stays below the load everywhere."""
     case = isothermal_case(
-        LoadTarget(40e3), mesh=MESH, inception="free", tilt=(4e-4, 1e-4), length_to_diameter=0.8
+        LoadTarget(40e3),
+        mesh=MESH,
+        inception="free",
+        misalignment=(4e-4, 1e-4),
+        length_to_diameter=0.8,
     )
     solution = solve_film(case, 50.0)
     assert solution.status is SolveStatus.NO_EQUILIBRIUM
@@ -169,7 +173,7 @@ def test_a_misaligned_journal_touches_before_it_carries_a_heavy_load():
     for angle in np.linspace(-math.pi, math.pi, 36, endpoint=False):
         for share in (0.5, 0.9, 0.99, 0.999):
             bearing = case.bearing.turned(-angle)
-            ends = np.abs(np.array(bearing.tilt)) * 0.5 * bearing.length
+            ends = np.abs(np.array(bearing.misalignment)) * 0.5 * bearing.length
             place = np.array([share * (CLEARANCE - float(np.hypot(*ends))), 0.0])
             problem = film_problem(case, 50.0, bearing, tuple(place))
             layers = isoviscous_layers(problem.mesh.shape, VISCOSITY)

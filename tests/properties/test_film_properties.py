@@ -155,10 +155,16 @@ def test_turning_bearing_and_journal_together_turns_the_force(eps, attitude, ang
     direction=angles,
     bore=st.sampled_from(["plain", "grooved"]),
 )
-def test_mirrored_tilt_is_the_same_bearing_seen_from_the_other_end(eps, size, direction, bore):
-    tilt = (size * math.cos(direction), size * math.sin(direction))
-    one = solve(isothermal_case(eps, mesh=MESH, tilt=tilt, **BORES[bore]))
-    two = solve(isothermal_case(eps, mesh=MESH, tilt=(-tilt[0], -tilt[1]), **BORES[bore]))
+def test_mirrored_misalignment_is_the_same_bearing_seen_from_the_other_end(
+    eps, size, direction, bore
+):
+    misalignment = (size * math.cos(direction), size * math.sin(direction))
+    one = solve(isothermal_case(eps, mesh=MESH, misalignment=misalignment, **BORES[bore]))
+    two = solve(
+        isothermal_case(
+            eps, mesh=MESH, misalignment=(-misalignment[0], -misalignment[1]), **BORES[bore]
+        )
+    )
     assert one.load == pytest.approx(two.load, rel=1e-8)
     assert one.attitude_angle == pytest.approx(two.attitude_angle, rel=1e-7)
     assert one.side_flow == pytest.approx(two.side_flow, rel=1e-7)
@@ -169,12 +175,12 @@ def test_mirrored_tilt_is_the_same_bearing_seen_from_the_other_end(eps, size, di
 
 @settings(few, max_examples=12)
 @given(eps=st.floats(0.1, 0.8), bore=st.sampled_from(["grooved", "elliptical"]))
-def test_vanishing_tilt_is_no_tilt(eps, bore):
-    """The full-length model of a bearing tilted by nothing to speak of equals the half model."""
+def test_vanishing_misalignment_is_none(eps, bore):
+    """The full-length model of a bearing hardly misaligned equals the half model."""
     tolerance = 1e-6
     eps = 0.4 * eps if bore == "elliptical" else eps
     half = solve(isothermal_case(eps, mesh=MESH, **BORES[bore]))
-    full = solve(isothermal_case(eps, mesh=MESH, tilt=(1e-12, 0.0), **BORES[bore]))
+    full = solve(isothermal_case(eps, mesh=MESH, misalignment=(1e-12, 0.0), **BORES[bore]))
     assert full.load == pytest.approx(half.load, rel=tolerance)
     assert full.side_flow == pytest.approx(half.side_flow, rel=tolerance)
     np.testing.assert_allclose(
@@ -184,12 +190,12 @@ def test_vanishing_tilt_is_no_tilt(eps, bore):
 
 @settings(few, max_examples=12)
 @given(eps=st.floats(0.1, 0.9), direction=angles, by_load=st.booleans())
-def test_a_plain_bearing_forgets_a_vanishing_tilt(eps, direction, by_load):
+def test_a_plain_bearing_forgets_a_vanishing_misalignment(eps, direction, by_load):
     """Its film begins opposite the line of centres, wherever that turns out to lie."""
     half = solve(isothermal_case(eps, mesh=MESH))
-    tilt = (1e-12 * math.cos(direction), 1e-12 * math.sin(direction))
+    misalignment = (1e-12 * math.cos(direction), 1e-12 * math.sin(direction))
     target = LoadTarget(half.load) if by_load else eps
-    full = solve(isothermal_case(target, mesh=MESH, tilt=tilt))
+    full = solve(isothermal_case(target, mesh=MESH, misalignment=misalignment))
     # It is meshed for a position on a grid: equal up to the mesh's error.
     assert full.load == pytest.approx(half.load, rel=0.01)
     assert full.eccentricity_ratio == pytest.approx(eps, rel=0.01)
@@ -301,12 +307,16 @@ def test_heat_balance_of_whatever_converges(
     speed=st.floats(0.1, 2e4),
     clearance=st.floats(2e-6, 2e-3),
     bore=bores,
-    tilt=st.sampled_from([(0.0, 0.0), (1e-4, 0.0), (1e-2, 0.0)]),
+    misalignment=st.sampled_from([(0.0, 0.0), (1e-4, 0.0), (1e-2, 0.0)]),
 )
-def test_no_input_ends_in_a_nan_or_a_wrong_load(load, speed, clearance, bore, tilt):
+def test_no_input_ends_in_a_nan_or_a_wrong_load(load, speed, clearance, bore, misalignment):
     """Loads from milligrams to a kiloton: a converged point that carries it, or a status."""
     case = isothermal_case(
-        LoadTarget(load), mesh=(40, 8), clearance=clearance, tilt=tilt, **BORES[bore]
+        LoadTarget(load),
+        mesh=(40, 8),
+        clearance=clearance,
+        misalignment=misalignment,
+        **BORES[bore],
     )
     point, _ = solve_case(case, speed)
     assert point.status in SolveStatus

@@ -18,9 +18,14 @@ MESH = (64, 16)
 SPLIT = split_grooves()
 
 
-def point(target=0.5, *, tilt=(0.0, 0.0), grooves=SPLIT, cavitation="reynolds"):
+def point(target=0.5, *, misalignment=(0.0, 0.0), grooves=SPLIT, cavitation="reynolds"):
     case = isothermal_case(
-        target, mesh=MESH, grooves=grooves, tilt=tilt, cavitation=cavitation, inception="free"
+        target,
+        mesh=MESH,
+        grooves=grooves,
+        misalignment=misalignment,
+        cavitation=cavitation,
+        inception="free",
     )
     case = replace(
         case,
@@ -51,13 +56,13 @@ def test_a_slight_misalignment_meets_the_moment_that_the_coefficients_foretell(g
     aligned = point(grooves=grooves)
     angle = 2e-3 * CLEARANCE / 0.05
     for theta in ((angle, 0.0), (0.0, angle)):
-        moment = point(grooves=grooves, tilt=(theta[1], -theta[0])).moment
+        moment = point(grooves=grooves, misalignment=(theta[1], -theta[0])).moment
         wanted = -aligned.coefficients_full.stiffness[2:, 2:] @ theta
         np.testing.assert_allclose(moment, wanted, atol=0.03 * np.abs(wanted).max())
 
 
 def test_a_point_knows_its_moments_from_json():
-    found = point(tilt=(2e-4, 1e-4))
+    found = point(misalignment=(2e-4, 1e-4))
     record = json.loads(json.dumps(point_to_dict(found)))
     assert record["coefficients_full"]["names"][3] == "theta_y"
     again = point_from_dict(record)
@@ -68,7 +73,7 @@ def test_a_point_knows_its_moments_from_json():
 
 
 def test_tables_hold_the_full_matrices_where_asked_for(tmp_path):
-    found = point(tilt=(2e-4, 1e-4))
+    found = point(misalignment=(2e-4, 1e-4))
     table = CoefficientTable.from_points([found])
     full = found.coefficients_full
     assert float(table.dataset["k_x_theta_y"].item()) == full.stiffness[0, 3]

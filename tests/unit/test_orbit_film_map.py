@@ -113,7 +113,7 @@ def test_a_very_short_film_tends_to_ocvirks():
     "bearing",
     [
         Bearing(0.05, 0.08, 1e-4),
-        Bearing(0.05, 0.08, 1e-4, tilt=(5e-4, -3e-4)),
+        Bearing(0.05, 0.08, 1e-4, misalignment=(5e-4, -3e-4)),
         Bearing(0.05, 0.08, 1e-4, arcs=elliptical_arcs(0.4)),
         Bearing(0.05, 0.08, 1e-4, grooves=split_grooves()),
     ],
@@ -126,7 +126,7 @@ def test_closest_film_against_the_thickness_on_a_fine_mesh(bearing):
     bore = bearing.radial_clearance + bore_offset(bearing, theta)
     found = minimum_film(bearing, x, y)
     for k in range(x.size):
-        ex, ey = x[k] + bearing.tilt[0] * along, y[k] + bearing.tilt[1] * along
+        ex, ey = x[k] + bearing.misalignment[0] * along, y[k] + bearing.misalignment[1] * along
         exact = float(np.min(bore - ex * np.cos(theta) - ey * np.sin(theta)))
         assert exact - 1e-9 < found[k] < exact + (2e-7 if bearing.grooves else 5e-9)
 

@@ -374,7 +374,7 @@ def test_contact_boundary_is_where_the_film_ends():
         length=0.08,
         radial_clearance=1e-4,
         arcs=(Arc(0.0, np.pi, preload=0.5), Arc(np.pi, 2.0 * np.pi, preload=0.5)),
-        tilt=(2e-4, 0.0),
+        misalignment=(2e-4, 0.0),
     )
     line = contact_boundary(lobed)
     assert line[0] == pytest.approx(line[-1])

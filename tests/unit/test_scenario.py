@@ -290,8 +290,8 @@ def test_load_direction_turns_the_bearing_into_the_load_frame() -> None:
     assert scenario.bearing.grooves[0].center == pytest.approx(math.radians(90))
     case = scenario.case()
     assert case.bearing.grooves[0].center == pytest.approx(math.radians(60))
-    # A tilt along the drawing's x axis lies 30 deg behind the load line.
-    assert case.bearing.tilt == pytest.approx((1e-4 * math.sqrt(0.75), -0.5e-4))
+    # A misalignment along the drawing's x axis lies 30 deg behind the load line.
+    assert case.bearing.misalignment == pytest.approx((1e-4 * math.sqrt(0.75), -0.5e-4))
 
 
 # -- heat, rotor, orbit, map ----------------------------------------------------------------------

@@ -17,6 +17,7 @@ from tolerances import (
 
 from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.bearing.solve import solve_case
+from rotorsim.status import SolveStatus
 
 ROWS = reference_rows("butenschoen1976_full360.csv")
 TRUSTED = [row for row in ROWS if row["epsilon"] <= 0.9]
@@ -35,7 +36,8 @@ def _name(row: dict[str, float]) -> str:
 def _solve(row: dict[str, float], mesh: tuple[int, int]) -> OperatingPoint:
     case = isothermal_case(row["epsilon"], length_to_diameter=row["B_over_D"], mesh=mesh)
     point, _ = solve_case(case, SPEED)
-    assert point.converged, point.message
+    # Dimensionless numbers hold at any pressure, also beyond what a bearing bears.
+    assert point.status in (SolveStatus.CONVERGED, SolveStatus.OUT_OF_RANGE), point.message
     return point
 
 

@@ -34,7 +34,7 @@ BEARINGS = {
     "elliptical": Bearing(
         RADIUS, LENGTH, CLEARANCE, arcs=elliptical_arcs(), grooves=split_grooves()
     ),
-    "tilted": Bearing(RADIUS, LENGTH, CLEARANCE, tilt=(2e-4, -3e-4)),
+    "misaligned": Bearing(RADIUS, LENGTH, CLEARANCE, misalignment=(2e-4, -3e-4)),
 }
 RUPTURE = ("reynolds", "jfo", "half_sommerfeld")
 

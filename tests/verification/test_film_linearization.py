@@ -40,9 +40,9 @@ BEARINGS = {
     "elliptical": Bearing(
         RADIUS, LENGTH, CLEARANCE, arcs=elliptical_arcs(0.4), grooves=split_grooves()
     ),
-    "tilted": Bearing(RADIUS, LENGTH, CLEARANCE, tilt=(2e-4, -3e-4)),
-    "tilted grooved": Bearing(
-        RADIUS, LENGTH, CLEARANCE, tilt=(2e-4, 1e-4), grooves=split_grooves()
+    "misaligned": Bearing(RADIUS, LENGTH, CLEARANCE, misalignment=(2e-4, -3e-4)),
+    "misaligned grooved": Bearing(
+        RADIUS, LENGTH, CLEARANCE, misalignment=(2e-4, 1e-4), grooves=split_grooves()
     ),
 }
 STEP = 2e-6
@@ -100,7 +100,7 @@ def test_coefficients_are_the_derivatives_of_the_force(shape, cavitation, therma
     np.testing.assert_allclose(damping, c, atol=COEFFICIENT_DIFFERENCES * np.abs(c).max(), rtol=0.0)
 
 
-@pytest.mark.parametrize("shape", ["plain", "tilted"])
+@pytest.mark.parametrize("shape", ["plain", "misaligned"])
 @pytest.mark.parametrize("cavitation", ["reynolds", "full_sommerfeld"])
 def test_film_that_begins_where_it_will(shape, cavitation):
     case = _case(BEARINGS[shape], cavitation, thermal=False)
@@ -117,7 +117,7 @@ def test_film_that_begins_where_it_will(shape, cavitation):
 
 def _whole(bearing: Bearing) -> Bearing:
     """The same bearing, solved over its whole length: misaligned by nothing."""
-    return bearing if not bearing.is_symmetric else replace(bearing, tilt=(1e-300, 0.0))
+    return bearing if not bearing.is_symmetric else replace(bearing, misalignment=(1e-300, 0.0))
 
 
 def _turning(problem: FilmProblem) -> FilmProblem:
@@ -210,7 +210,7 @@ class _BulkLaw:
         )
 
 
-@pytest.mark.parametrize("shape", ["plain", "fed", "tilted"])
+@pytest.mark.parametrize("shape", ["plain", "fed", "misaligned"])
 def test_a_flow_law_that_depends_on_the_film_thickness_is_linearised(shape):
     """Whatever the law makes of conductance and Couette flow: no power of h is assumed."""
     case = _case(BEARINGS[shape], "reynolds", thermal=False)

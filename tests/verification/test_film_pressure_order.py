@@ -30,9 +30,9 @@ GAUSS = np.polynomial.legendre.leggauss(4)
 class Manufactured:
     """p*, film thickness, and viscosity mu = mu0 m(theta, y)/(1 + a(theta) z)."""
 
-    def __init__(self, inception: str, tilt: tuple[float, float]) -> None:
+    def __init__(self, inception: str, misalignment: tuple[float, float]) -> None:
         self.slot = inception == "max_film"
-        self.tilt = tilt
+        self.misalignment = misalignment
 
     def pressure(self, t, y):
         wave, _ = self._wave(t)
@@ -51,7 +51,7 @@ class Manufactured:
     @property
     def _skew(self) -> float:
         """A half film is symmetric about its mid-plane."""
-        return 0.3 if self.tilt != (0.0, 0.0) else 0.0
+        return 0.3 if self.misalignment != (0.0, 0.0) else 0.0
 
     def _wave(self, t):
         if not self.slot:
@@ -61,7 +61,7 @@ class Manufactured:
         return lobe * tail, -np.sin(t) * tail + lobe * 0.25 * np.cos(0.5 * t)
 
     def thickness(self, t, y):
-        ex, ey = POSITION[0] + self.tilt[0] * y, POSITION[1] + self.tilt[1] * y
+        ex, ey = POSITION[0] + self.misalignment[0] * y, POSITION[1] + self.misalignment[1] * y
         return CLEARANCE - ex * np.cos(t) - ey * np.sin(t)
 
     def viscosity(self, t, y, z):
@@ -106,7 +106,7 @@ def solve(exact: Manufactured, level: int) -> float:
     settings = FilmSettings(
         inception=Inception.MAX_FILM if exact.slot else Inception.FREE, mesh=size
     )
-    bearing = Bearing(RADIUS, LENGTH, CLEARANCE, tilt=exact.tilt)
+    bearing = Bearing(RADIUS, LENGTH, CLEARANCE, misalignment=exact.misalignment)
     mesh = build_mesh(bearing, settings, POSITION)
     z = (np.arange(size.cross_film) + 0.5) / size.cross_film
     t, y = mesh.theta[:, None], mesh.y[None, :]
@@ -123,9 +123,9 @@ def solve(exact: Manufactured, level: int) -> float:
 
 
 @pytest.mark.parametrize("inception", ["free", "max_film"])
-@pytest.mark.parametrize("tilt", [(0.0, 0.0), (1e-4, -2e-4)], ids=["half", "tilted"])
-def test_pressure_is_second_order(inception, tilt):
-    exact = Manufactured(inception, tilt)
+@pytest.mark.parametrize("misalignment", [(0.0, 0.0), (1e-4, -2e-4)], ids=["half", "misaligned"])
+def test_pressure_is_second_order(inception, misalignment):
+    exact = Manufactured(inception, misalignment)
     errors = [solve(exact, level) for level in range(4)]
     order = math.log2(errors[-2] / errors[-1])
     assert order == pytest.approx(2.0, abs=ORDER)

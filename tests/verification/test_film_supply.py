@@ -21,14 +21,14 @@ def grooves(length=None, pressure=1e5, **ends) -> tuple[Groove, ...]:
     return tuple(Groove(s * QUARTER, extent, length, pressure, **ends) for s in (1.0, -1.0))
 
 
-@pytest.mark.parametrize("tilt", [(0.0, 0.0), (2e-4, 1e-4)], ids=["aligned", "tilted"])
+@pytest.mark.parametrize("misalignment", [(0.0, 0.0), (2e-4, 1e-4)], ids=["aligned", "misaligned"])
 @pytest.mark.parametrize("length", [None, 0.06], ids=["full", "partial"])
 @pytest.mark.parametrize("pressure", [0.0, 1e5])
 @pytest.mark.parametrize("cavitation", ["jfo", "reynolds", "half_sommerfeld"])
-def test_grooves_give_what_leaves_at_the_ends(cavitation, pressure, length, tilt):
+def test_grooves_give_what_leaves_at_the_ends(cavitation, pressure, length, misalignment):
     """The mass-conserving film makes no oil; what the others make counts as supplied."""
     case = isothermal_case(
-        0.5, mesh=(96, 24), cavitation=cavitation, inception="free", tilt=tilt,
+        0.5, mesh=(96, 24), cavitation=cavitation, inception="free", misalignment=misalignment,
         grooves=grooves(length, pressure),
     )  # fmt: skip
     point, _ = solve_case(case, SPEED)

@@ -110,7 +110,7 @@ def test_an_anchored_film_is_no_function_of_eccentricity_and_squeeze_direction_a
     assert can_be_mapped(case())
     assert not can_be_mapped(case(inception="max_film"))
     assert not can_be_mapped(case(grooves=split_grooves()))
-    assert not can_be_mapped(case(tilt=(1e-4, 0.0)))
+    assert not can_be_mapped(case(misalignment=(1e-4, 0.0)))
     assert not can_be_mapped(case(cavitation="jfo"))
     assert not can_be_mapped(thermal_case(inception="free"))
 

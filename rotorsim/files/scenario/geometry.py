@@ -109,7 +109,7 @@ def _in_groove(bearing: Bearing, start: float, extent: float) -> bool:
 
 def check_tilt(bearing: Bearing, eccentricity_ratio: float | None) -> None:
     """Refuse a misalignment with which the journal touches the bore at one end for certain."""
-    at_end = math.hypot(*bearing.tilt) * 0.5 * bearing.length / bearing.radial_clearance
+    at_end = math.hypot(*bearing.misalignment) * 0.5 * bearing.length / bearing.radial_clearance
     if math.hypot(at_end, eccentricity_ratio or 0.0) >= 1.0:
         raise InputError(
             "the tilted journal touches the bore at the bearing's end: the tilt must stay below "
