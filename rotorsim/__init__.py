@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .bearing.operating_point import FilmFields, OperatingPoint
-    from .bearing.solve import solve, solve_case
+    from .bearing.solve import solve_case
     from .bearing.table import CoefficientTable
     from .errors import InputError, OutOfRangeError, RotorsimError, ScenarioError, TableError
     from .files.scenario import Scenario, load_scenario
@@ -63,7 +63,8 @@ __all__ = [
 
 _HOMES = {
     "bearing.operating_point": ("FilmFields", "OperatingPoint"),
-    "bearing.solve": ("solve", "solve_case"),
+    "bearing.solve": ("solve_case",),
+    "study.points": ("solve",),
     "bearing.table": ("CoefficientTable",),
     "errors": ("InputError", "OutOfRangeError", "RotorsimError", "ScenarioError", "TableError"),
     "files.scenario": ("Scenario", "load_scenario"),

@@ -16,12 +16,12 @@ _HOW = {
 
 
 def refuse_path(value: object, key: str = "scenario") -> None:
-    """Refuse a file's name where the `Scenario` read from it is needed.
+    """Refuse a file's name, and all but a `Scenario`, where one is needed.
 
     Raises
     ------
     InputError
-        `value` is a text or a path.
+        `value` is a text, a path, or of another type.
     """
     if isinstance(value, (str, Path)):
         raise InputError(
@@ -29,6 +29,8 @@ def refuse_path(value: object, key: str = "scenario") -> None:
             key=key,
             value=value,
         )
+    if not hasattr(value, "cases"):
+        raise InputError("must be a Scenario", key=key, value=type(value).__name__)
 
 
 def finite_number(value: Any, key: str, unit: str = "") -> float:

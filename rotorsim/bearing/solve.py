@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 from contextlib import suppress
-from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments import finite_number, refuse_path
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import FilmFlow, film_flow
@@ -19,7 +16,8 @@ from ..film.linearization import following_stiffness
 from ..film.losses import friction_force, journal_moment, peak, side_flow, supply_flow
 from ..film.pad_solution import solve_pads
 from ..film.solution import FilmSolution, WarmStart, solve_film
-from ..model import Case, Cavitation, InletModel, LoadTarget, ThermalModel, ViscosityResponse
+from ..model import Case, Cavitation, InletModel, LoadTarget, ViscosityResponse
+from ..model.entries import Quantity
 from ..status import SolveStatus
 from .checks import regime_warnings
 from .dynamics import (
@@ -32,72 +30,11 @@ from .operating_point import FilmFields, OperatingPoint, failed_point
 from .pads import pad_results, unloaded_warnings
 from .whirl import rigid_threshold
 
-if TYPE_CHECKING:
-    from ..files.scenario import Scenario
-
 Array = NDArray[np.float64]
 FOLLOWING = ViscosityResponse.FOLLOWING
 PRESSURE_LIMIT = 400e6
 """[Pa]; a load that needs more than this is out of the model's range."""
 _WITH_NUMBERS = (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED, SolveStatus.OUT_OF_RANGE)
-Choice = TypeVar("Choice")
-
-
-def solve(
-    scenario: Scenario,
-    *,
-    speed: float | None = None,
-    radial_clearance: float | None = None,
-    thermal_model: str | None = None,
-    rotations: bool | None = None,
-) -> OperatingPoint:
-    """One operating point of a scenario, its fields included.
-
-    Parameters
-    ----------
-    scenario : Scenario
-    speed : float, optional
-        [rad/s]; any positive value. May be omitted if the scenario has one speed only.
-    radial_clearance : float, optional
-        [m]; likewise.
-    thermal_model : str, optional
-        ``isothermal`` or ``thd``; likewise.
-    rotations : bool, optional
-        Give K and C over the journal's rotations as well (`OperatingPoint.coefficients_full`).
-        Default: as the scenario says (``film.rotations``).
-
-    Raises
-    ------
-    InputError
-        Something is left open, not positive, or no number; or `scenario` is a file's name.
-    """
-    refuse_path(scenario)
-    for name, value, unit in (
-        ("speed", speed, "rad/s"),
-        ("radial_clearance", radial_clearance, "m"),
-    ):
-        if value is not None:
-            finite_number(value, name, unit)
-    models = tuple(str(m) for m in scenario.thermal_models)
-    case = scenario.case(
-        _only("radial_clearance", radial_clearance, scenario.radial_clearances),
-        ThermalModel(_only("thermal_model", thermal_model, models)),
-    )
-    if rotations is not None:
-        case = replace(case, film=replace(case.film, rotations=rotations))
-    omega = _only("speed", speed, tuple(float(s) for s in scenario.speeds))
-    return solve_case(case, omega, keep_fields=True)[0]
-
-
-def _only(name: str, value: Choice | None, choices: tuple[Choice, ...]) -> Choice:
-    if value is not None:
-        return value
-    if len(choices) != 1:
-        raise InputError(
-            f"must be given: the scenario leaves the choice between {len(choices)} values",
-            key=name,
-        )
-    return choices[0]
 
 
 def solve_case(
@@ -128,9 +65,10 @@ def solve_case(
     InputError
         The speed is not positive, or the mesh cannot hold the geometry.
     """
-    finite_number(speed, "speed", "rad/s")
-    if not (math.isfinite(speed) and speed > 0.0):
-        raise InputError("must be above 0 (rad/s)", key="speed", value=speed)
+    try:
+        speed = Quantity("speed").check(speed, "speed")
+    except InputError as error:
+        raise InputError(error.message, key="speed", value=error.value or speed) from None
     try:
         solution = _solution(case, speed, initial)
     except NoFilmError as error:
@@ -376,4 +314,4 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
     )
 
 
-__all__ = ["WarmStart", "operating_point", "solve", "solve_case"]
+__all__ = ["WarmStart", "operating_point", "solve_case"]

@@ -12,6 +12,7 @@ import typer
 from ..errors import TableError
 from ..status import SolveStatus
 from .inputs import (
+    asked_scenario,
     check_file,
     check_workers,
     cluster,
@@ -22,10 +23,12 @@ from .inputs import (
 )
 from .options import (
     ClearanceOption,
+    LoadOption,
     ModelOption,
     ScenarioArgument,
     SchedulerOption,
     SpeedOption,
+    SupplyTemperatureOption,
     WorkersOption,
 )
 from .output import DONE, INCOMPLETE, Output
@@ -98,6 +101,8 @@ def solve(
     speed: SpeedOption = None,
     clearance: ClearanceOption = None,
     model: ModelOption = None,
+    load: LoadOption = None,
+    supply_temperature: SupplyTemperatureOption = None,
     workers: WorkersOption = None,
 ) -> int:
     """Solve operating points: pressure, temperature, forces, K, C, stability.
@@ -110,7 +115,8 @@ def solve(
     from .progress import film_progress
 
     loaded = load_scenario(scenario)
-    cases = wanted_cases(loaded, clearance, model)
+    loaded = asked_scenario(loaded, clearance, load, supply_temperature)
+    cases = wanted_cases(loaded, model)
     speeds = wanted_speeds(loaded, speed)
     total = len(cases) * len(speeds)
     check_workers(workers)

@@ -22,14 +22,35 @@ if TYPE_CHECKING:
     from .output import Output
 
 
-def wanted_cases(scenario: Scenario, clearance: str | None, model: str | None) -> list[Case]:
-    """Cases of `scenario` that the options ``--clearance`` and ``--model`` leave."""
-    clearances, models = scenario.radial_clearances, scenario.thermal_models
-    if clearance is not None:
-        clearances = (wanted_clearance(scenario, clearance),)
-    if model is not None:
-        models = (model,)
-    return [scenario.case(one, kind) for kind in models for one in clearances]
+def asked_scenario(
+    scenario: Scenario, clearance: str | None, load: str | None, supply_temperature: str | None
+) -> Scenario:
+    """Scenario with what the options ask for, which it need not list."""
+    from ..units import parse_quantity
+
+    changes = {}
+    for key, name, text, kind, example in (
+        ("--clearance", "radial_clearance", clearance, "length", "100 um"),
+        ("--load", "load", load, "force", "10 kN"),
+        (
+            "--supply-temperature", "supply_temperature", supply_temperature, "temperature",
+            "40 degC",
+        ),
+    ):  # fmt: skip
+        if text is not None:
+            value = parse_quantity(text, kind, key=key, example=example)
+            if value < 0.0 or (value == 0.0 and name != "load"):
+                raise InputError(f'must be above 0, for example "{example}"', key=key, value=text)
+            changes[name] = value
+    if not changes:
+        return scenario
+    return scenario.replace(**changes, orbit=None, stability=None, tolerances=None)
+
+
+def wanted_cases(scenario: Scenario, model: str | None) -> list[Case]:
+    """Cases of `scenario` that the option ``--model`` leaves."""
+    models = scenario.thermal_models if model is None else (model,)
+    return [scenario.case(one, kind) for kind in models for one in scenario.radial_clearances]
 
 
 def wanted_clearance(scenario: Scenario, text: str) -> float:

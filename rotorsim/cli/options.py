@@ -83,7 +83,26 @@ ClearanceOption = Annotated[
         "--clearance",
         "-c",
         metavar="LENGTH",
-        help='Only this radial clearance, e.g. "100 um".',
+        help='Only this radial clearance, e.g. "100 um"; `solve` takes any.',
+        show_default="the scenario's",
+    ),
+]
+LoadOption = Annotated[
+    str | None,
+    typer.Option(
+        "--load",
+        "-w",
+        metavar="FORCE",
+        help='This static load in its place, e.g. "12 kN".',
+        show_default="the scenario's load or eccentricity ratio",
+    ),
+]
+SupplyTemperatureOption = Annotated[
+    str | None,
+    typer.Option(
+        "--supply-temperature",
+        metavar="TEMPERATURE",
+        help='This temperature of the supplied oil, e.g. "45 degC".',
         show_default="the scenario's",
     ),
 ]

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from functools import cache
 from types import NoneType, UnionType
-from typing import Annotated, Any, TypeVar, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, TypeVar, Union, get_args, get_origin, get_type_hints
 
 from ..arguments import finite_number
 from ..errors import InputError
@@ -100,6 +100,9 @@ class Quantity:
 
 class Leaf:
     """An entry with a spelling of its own; subclasses read it from a file's value."""
+
+    kind: ClassVar[str | None] = None
+    """Kind of quantity of a plain number in SI, if it may be one."""
 
     def read(self, value: object) -> Any:
         """Return what `value` means.

@@ -243,6 +243,8 @@ class Viscosity(NamedTuple):
 class _ViscosityEntry(Leaf):
     """Text with a unit of dynamic or kinematic viscosity."""
 
+    kind = "dynamic viscosity"
+
     def read(self, value: object) -> Viscosity:
         try:
             return Viscosity(Quantity("kinematic viscosity", "32 cSt").read(value), True)

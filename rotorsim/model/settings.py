@@ -81,6 +81,8 @@ class ShaftModel(StrEnum):
 class _ShaftEntry(Leaf):
     """A condition of the shaft, or its temperature."""
 
+    kind = "temperature"
+
     def read(self, value: object) -> ShaftModel | float:
         names = [name for name in ShaftModel if name is not ShaftModel.GIVEN]
         if isinstance(value, str) and value in names:

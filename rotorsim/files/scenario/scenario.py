@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from ...model.tolerances import ToleranceSettings
 from ...rotor import Rotor
 from ...shipped import shipped_scenarios
 from ...text import printable
+from .changes import changed_text
 from .consistency import settled
 from .document import parse_toml, read_text
 from .reader import Reader
@@ -165,6 +166,34 @@ class Scenario:
             return settled(scenario, tables)
         except InputError as error:
             raise reader.error(error) from None
+
+    def replace(self, **changes: Any) -> Scenario:
+        """Return the scenario with some entries changed, read and checked as a file is.
+
+        Parameters
+        ----------
+        **changes
+            New values by the entry's key: ``load=12e3``, ``radial_clearance=90e-6`` (or a list),
+            ``supply_temperature=313.15``, ``speed=[900.0, 1200.0]``, ``thermal_model="thd"``. A key
+            that several tables have is that of [operating], [bearing], [thermal], [lubricant],
+            [film], [rotor], [orbit] or [stability], the first that has it; with its table it is
+            written ``**{"orbit.speed": 900.0}``. Numbers are in SI, texts have units;
+            None removes an entry or a table. A load takes the place of an eccentricity ratio, one
+            description of the oil that of another.
+
+        Raises
+        ------
+        InputError
+            There is no such entry, or the changed scenario is refused.
+
+        Examples
+        --------
+        >>> scenario = load_scenario("quick").replace(load="12 kN", radial_clearance=90e-6)
+        >>> scenario.target, scenario.radial_clearances
+        (LoadTarget(load=12000.0), (9e-05,))
+        """
+        text = changed_text(self.text, type(self), changes)
+        return type(self).from_text(text, self.source)
 
     def case(
         self,
