@@ -211,6 +211,8 @@ def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | N
         bearing.radial_clearance,
     )
     note = f"film force from its map over eccentricity and squeeze direction, L/D = {ratio:.4g}"
+    if force.force_map.note:
+        note += f"; {force.force_map.note}"
     if isinstance(case.target, LoadTarget):
         return LoadedFilm(force, case.target.load, bearing, note)
     assert isinstance(case.target, EccentricityTarget)

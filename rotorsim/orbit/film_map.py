@@ -3,7 +3,11 @@
 In the frame of the impedance (see `force_map`) the film is squeezed and nothing else, so the film
 solver is called with a shaft at rest. Its error falls with the square of the cell size in smooth
 flow, the rupture edge included; two meshes and Richardson's extrapolation leave a few parts in ten
-thousand.
+thousand, up to an eccentricity ratio of 0.9995. There the pressure falls to nothing at the ends
+over a length of some sqrt(2 (1 - eps)) radii: cells are crowded towards the ends.
+
+A map's file is named after all that its numbers depend on, the text of the modules that solve it
+included, and holds a checksum: a damaged or altered file is solved again.
 
 What a map can hold: a plain, aligned, isoviscous film with ambient supply whose beginning is
 ``free``. With ``max_film`` a line p = 0 stands still in the bush: the film then depends on where
@@ -18,7 +22,7 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 from zipfile import BadZipFile
@@ -26,11 +30,12 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import __version__
 from ..atomic import replacing
 from ..errors import InputError
+from ..film.geometry import film_geometry
 from ..film.layers import isoviscous_layers
-from ..film.problem import film_problem, film_state
+from ..film.operator import face_topology
+from ..film.problem import FilmProblem, film_problem, film_state
 from ..model import (
     Bearing,
     Case,
@@ -49,14 +54,14 @@ from .force_map import ForceMap
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
-MAP_VERSION = 1
-"""Raise it whenever the map's numbers change within a version: older files are passed over."""
 MAPPED = (Cavitation.REYNOLDS, Cavitation.HALF_SOMMERFELD)
 """Rupture conditions that are homogeneous of first degree in pressure and know no history."""
-_ROWS, _COLUMNS, _MAX_ECCENTRICITY_RATIO = 41, 96, 0.98
-_MESH, _THIN_MESH = (256, 24), (256, 48)
+_ROWS, _COLUMNS, _MAX_ECCENTRICITY_RATIO = 44, 112, 0.9995
+_MESH, _THIN_MESH = (256, 24), (192, 36)
 _THIN = 0.8
 """Eccentricity ratio above which the pressure's boundary layers at the ends need `_THIN_MESH`."""
+_CROWDING = 2.5
+"""Cells of `_THIN_MESH` along the axis: distance from the end as this power of their number."""
 _CLEARANCE = 1e-3
 
 
@@ -113,28 +118,41 @@ def cache_folder() -> Path:
 def map_path(length_to_diameter: float, cavitation: Cavitation, folder: Path) -> Path:
     """File of one map; its name holds everything that the numbers depend on."""
     settings = (
-        __version__, MAP_VERSION, length_to_diameter, cavitation.value, _ROWS, _COLUMNS,
-        _MAX_ECCENTRICITY_RATIO, _MESH, _THIN_MESH, _THIN,
+        sources_digest(), length_to_diameter, cavitation.value, _ROWS, _COLUMNS,
+        _MAX_ECCENTRICITY_RATIO, _MESH, _THIN_MESH, _THIN, _CROWDING,
     )  # fmt: skip
     key = hashlib.sha256(repr(settings).encode()).hexdigest()[:12]
     return folder / f"force_map_{cavitation.value}_{length_to_diameter:g}_{key}.npz"
 
 
-@lru_cache(maxsize=16)
-def _in_memory(path: Path, _changed: int) -> ForceMap | None:
-    return read_map(path)
+@lru_cache(maxsize=1)
+def sources_digest() -> str:
+    """SHA-256 of the modules that a map's numbers come from: the film, the model and the map."""
+    package = Path(__file__).parents[1]
+    files = [*package.glob("film/**/*.py"), *package.glob("model/*.py")]
+    files += [package / "orbit" / name for name in ("film_map.py", "force_map.py", "kernels.py")]
+    digest = hashlib.sha256()
+    for file in sorted(files):
+        digest.update(file.relative_to(package).as_posix().encode())
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()
+
+
+_in_memory: dict[Path, tuple[int, ForceMap]] = {}
+"""Maps of this process with the time at which their file was written."""
 
 
 def _kept_map(
     ratio: float, cavitation: Cavitation, folder: Path, progress: Progress | None
 ) -> ForceMap:
     path = map_path(ratio, cavitation, folder)
-    try:
-        found = _in_memory(path, path.stat().st_mtime_ns)
-    except OSError:
-        found = None
-    if found is not None:
-        return found
+    written = _written(path)
+    if written is not None:
+        held = _in_memory.get(path)
+        found = held[1] if held is not None and held[0] == written else read_map(path)
+        if found is not None:
+            _in_memory[path] = written, found
+            return found
     made = ForceMap.build(
         SqueezeFilm(ratio, cavitation).impedance,
         max_eccentricity_ratio=_MAX_ECCENTRICITY_RATIO,
@@ -142,29 +160,57 @@ def _kept_map(
         columns=_COLUMNS,
         progress=progress,
     )
+    if written is not None:
+        made = replace(made, note=f"the map kept in {path.name} was damaged and is solved again")
     # a folder that cannot be written costs time at the next run, nothing else
     with suppress(OSError):
         write_map(path, made)
+        _in_memory[path] = path.stat().st_mtime_ns, made
     return made
+
+
+def _written(path: Path) -> int | None:
+    """Time of a file's last change [ns]; None where there is none."""
+    try:
+        return path.stat().st_mtime_ns
+    except OSError:
+        return None
 
 
 def write_map(path: Path, force_map: ForceMap) -> None:
     """Write a map, whole or not at all."""
     with replacing(path) as temporary:
-        np.savez(temporary, coefficients=force_map.coefficients, numbers=force_map.numbers)
+        np.savez(
+            temporary,
+            coefficients=force_map.coefficients,
+            numbers=force_map.numbers,
+            checksum=_checksum(force_map.coefficients, force_map.numbers),
+        )
+
+
+def _checksum(coefficients: Array, numbers: Array) -> Array:
+    """SHA-256 of a map's arrays, shapes included, as 32 bytes."""
+    digest = hashlib.sha256(repr((coefficients.shape, numbers.shape)).encode())
+    for values in (coefficients, numbers):
+        digest.update(np.ascontiguousarray(values, dtype="<f8").tobytes())
+    return np.frombuffer(digest.digest(), dtype=np.uint8)
 
 
 def read_map(path: Path) -> ForceMap | None:
-    """Read a map; None where the file is missing, damaged or of another kind."""
+    """Read a map; None where the file is missing, damaged, altered or of another kind."""
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            coefficients, numbers = file["coefficients"], file["numbers"]
+            coefficients, numbers, checksum = (
+                file[name] for name in ("coefficients", "numbers", "checksum")
+            )
     except (OSError, ValueError, KeyError, EOFError, TypeError, AttributeError, BadZipFile):
         return None
     shape_right = coefficients.ndim == 3 and coefficients.shape[0] == 2 and numbers.shape == (4,)
     if not shape_right or coefficients.dtype != float or numbers.dtype != float:
         return None
     if not (np.isfinite(coefficients).all() and np.isfinite(numbers).all()):
+        return None
+    if not np.array_equal(checksum, _checksum(coefficients, numbers)):
         return None
     return ForceMap(np.ascontiguousarray(coefficients), *map(float, numbers))
 
@@ -206,6 +252,8 @@ class _RestingFilm:
         self.eccentricity_ratio = eccentricity_ratio
         self.position = (eccentricity_ratio * _CLEARANCE, 0.0)
         self.problem = film_problem(case, 0.0, case.bearing, self.position)
+        if eccentricity_ratio > _THIN:
+            self.problem = _crowded(self.problem)
         self.layers = isoviscous_layers(self.problem.mesh.shape, 1.0)
         # F = 2 mu |v_s| L (R/c)^3 W with mu = |v_s| = R = 1
         self.scale = 2.0 * case.bearing.length / _CLEARANCE**3
@@ -231,3 +279,16 @@ class _RestingFilm:
         )
         self.full = state.solution.full
         return state.force / self.scale
+
+
+def _crowded(problem: FilmProblem) -> FilmProblem:
+    """Film on a mesh whose cells crowd towards the bearing's end, p = 0 all round it."""
+    mesh = problem.mesh
+    half = float(mesh.y_faces[-1])
+    mesh = replace(mesh, y_faces=half * (1.0 - (1.0 - mesh.y_faces / half) ** _CROWDING))
+    return replace(
+        problem,
+        mesh=mesh,
+        topology=face_topology(mesh, np.zeros(1)),
+        geometry=film_geometry(problem.bearing, mesh),
+    )

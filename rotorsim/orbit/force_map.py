@@ -8,13 +8,23 @@ conditions are homogeneous of first degree in pressure, so the force is
 
 with alpha the angle from the eccentricity to the squeeze velocity v_s: Childs, Moes & van Leeuwen,
 J. Lubr. Technol. 99 (1977) 198, call W the impedance. It is solved once on a grid and splined.
+
+Close to the bush the film that carries is as long as k = sqrt(1 - eps^2), and there the squeeze
+velocity counts as (cos alpha, k sin alpha): between alpha = 80 and 100 degrees, say, the force then
+changes from that of an approaching to that of a retreating journal, five powers of ten smaller.
+Hence the grid is uniform in
+
+    xi = atanh(eps),    gamma = (alpha + beta)/2,    beta = atan2(k sin alpha, cos alpha),
+
+so that half of the columns lie in that layer, and what is splined is asinh(k W/W_0), W_0 the force
+at the centre: of one relative accuracy over all sizes.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,33 +43,37 @@ _MIRRORED_ROWS = 8
 
 @dataclass(frozen=True)
 class ForceMap:
-    """Impedance on a uniform grid of atanh(eps) and alpha, as a bicubic B-spline (C2).
+    """Impedance on a uniform grid of xi and gamma, as a bicubic B-spline (C2).
 
     Attributes
     ----------
     coefficients : (2, rows + 2, columns + 3) array
-        Of the radial and tangential impedance times (1 - eps^2)^exponent.
+        Of asinh(k W/W_0), radial and tangential.
     first, step, last : float
-        Of the radial coordinate atanh(eps); rows below 0 mirror the map through the centre, so
-        that the force is smooth there.
-    exponent : float
+        Of the radial coordinate xi; rows below 0 mirror the map through the centre, so that the
+        force is smooth there.
+    central : float
+        W_0, the impedance of the centred journal.
+    note : str
+        What a user should know of how the map came about.
     """
 
     coefficients: Array
     first: float
     step: float
     last: float
-    exponent: float
+    central: float
+    note: str = field(default="", compare=False)
 
     @property
     def max_eccentricity_ratio(self) -> float:
-        """Where the solved grid ends; beyond it the scale (1 - eps^2)^-exponent extrapolates."""
+        """Where the solved grid ends; from there the force grows as (1 - eps^2)^(-3/2)."""
         return math.tanh(self.last)
 
     @property
     def numbers(self) -> Array:
         """What the compiled kernel needs besides the coefficients, (4,)."""
-        return np.array([self.first, self.step, self.last, self.exponent])
+        return np.array([self.first, self.step, self.last, self.central])
 
     def impedance(self, eccentricity_ratio: float, angle: float) -> tuple[float, float]:
         """Radial and tangential impedance at one point."""
@@ -72,10 +86,9 @@ class ForceMap:
         cls,
         impedance: Impedance,
         *,
-        max_eccentricity_ratio: float = 0.98,
-        rows: int = 41,
-        columns: int = 96,
-        exponent: float = 2.0,
+        max_eccentricity_ratio: float = 0.9995,
+        rows: int = 48,
+        columns: int = 128,
         symmetric: bool = True,
         progress: Callable[[int, int], None] | None = None,
     ) -> ForceMap:
@@ -90,12 +103,9 @@ class ForceMap:
         max_eccentricity_ratio : float
             Of the last row.
         rows : int
-            From eps = 0 on, equally spaced in atanh(eps).
+            From eps = 0 on, equally spaced in xi.
         columns : int
-            Over the whole turn; even.
-        exponent : float
-            The force is splined times (1 - eps^2)^exponent: between 3/2 (long bearing) and 5/2
-            (short bearing) it stays of one size up to the wall.
+            Over the whole turn, equally spaced in gamma; even.
         symmetric : bool
             Whether the bearing looks the same mirrored: plain, p = 0 at the ends and at inception.
         progress : callable, optional
@@ -122,11 +132,12 @@ class ForceMap:
         values = np.empty((2, rows, columns))
         for i, place in enumerate(radial):
             values[:, i] = _row(impedance, math.tanh(place), columns, symmetric)
-            values[:, i] *= (1.0 - math.tanh(place) ** 2) ** exponent
             if progress is not None:
                 progress(i + 1, rows)
         if not np.all(np.isfinite(values)):
             raise InputError("the film force is not finite everywhere", key="impedance")
+        central = float(np.hypot(*values[:, 0, 0]))
+        values = np.arcsinh(values / np.cosh(radial)[:, None] / central)
         # the other side of the centre: W(-eps, alpha) = -W(eps, alpha + pi)
         across = -np.roll(values[:, _MIRRORED_ROWS:0:-1], columns // 2, axis=2)
         step = float(radial[1])
@@ -135,7 +146,7 @@ class ForceMap:
             -_MIRRORED_ROWS * step,
             step,
             float(radial[-1]),
-            exponent,
+            central,
         )
 
 
@@ -175,12 +186,26 @@ class FilmMapForce:
 
 def _row(impedance: Impedance, eps: float, columns: int, symmetric: bool) -> Array:
     """Radial and tangential impedance over one turn, (2, columns)."""
-    angles = 2.0 * np.pi * np.arange(columns) / columns
+    angles = _angles(eps, columns)
     if not symmetric:
         return np.array([impedance(eps, float(a)) for a in angles]).T
     half = np.array([impedance(eps, float(a)) for a in angles[: columns // 2 + 1]]).T
     mirrored = half[:, -2:0:-1] * np.array([[1.0], [-1.0]])
     return np.concatenate([half, mirrored], axis=1)
+
+
+def _angles(eps: float, columns: int) -> Array:
+    """Angles alpha of the columns, (columns,), from 0 to 2 pi."""
+    thinness = math.sqrt((1.0 - eps) * (1.0 + eps))
+    wanted = 2.0 * np.pi * np.arange(columns // 2 + 1) / columns
+    low, high = np.zeros(wanted.size), np.full(wanted.size, np.pi)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        found = np.array([kernels.map_column(float(a), thinness) for a in middle])
+        low, high = np.where(found < wanted, middle, low), np.where(found < wanted, high, middle)
+    half = 0.5 * (low + high)
+    half[0], half[-1] = 0.0, np.pi
+    return np.concatenate([half, 2.0 * np.pi - half[-2:0:-1]])
 
 
 def _bicubic(values: Array) -> Array:

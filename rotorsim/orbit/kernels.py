@@ -53,17 +53,24 @@ def map_impedance(
 ) -> tuple[float, float]:
     """Dimensionless film force (radial, tangential) from a bicubic B-spline.
 
-    numbers: first radial coordinate, its step, largest, scaling exponent; the radial coordinate is
-    atanh(eps). table: (2, rows + 2, columns + 3) B-spline coefficients of the scaled force.
+    numbers: first radial coordinate, its step, largest, force at the centre; table: (2, rows + 2,
+    columns + 3) B-spline coefficients. Coordinates and what is splined: see
+    `rotorsim.orbit.force_map`.
     """
-    eps = eccentricity_ratio
-    gap = 1.0 - eps * eps
-    # past the last row the scaled force is held: the scale alone carries it on towards contact
-    place = (min(math.atanh(eps), numbers[2]) - numbers[0]) / numbers[1]
+    coordinate = math.atanh(eccentricity_ratio)
+    thinness = 1.0 / math.cosh(coordinate)
+    # past the last row the force grows as that of a film that touches along a line
+    beyond = 1.0
+    if coordinate > numbers[2]:
+        coordinate = numbers[2]
+        last = 1.0 / math.cosh(coordinate)
+        beyond = (last / thinness) ** 3
+        thinness = last
+    place = (coordinate - numbers[0]) / numbers[1]
     row = min(max(int(place), 0), table.shape[1] - 4)
     u = place - row
     columns = table.shape[2] - 3
-    place = (angle / (2.0 * math.pi)) % 1.0 * columns
+    place = (map_column(angle, thinness) / (2.0 * math.pi)) % 1.0 * columns
     column = min(int(place), columns - 1)
     v = place - column
     wu = _cubic_weights(u)
@@ -74,8 +81,15 @@ def map_impedance(
             weight = wu[i] * wv[j]
             radial += weight * table[0, row + i, column + j]
             tangential += weight * table[1, row + i, column + j]
-    scale = gap ** (-numbers[3])
-    return radial * scale, tangential * scale
+    scale = beyond * numbers[3] / thinness
+    return math.sinh(radial) * scale, math.sinh(tangential) * scale
+
+
+@numba.njit(cache=True)
+def map_column(angle: float, thinness: float) -> float:
+    """Angular coordinate of the force map [rad]; see `rotorsim.orbit.force_map`."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return 0.5 * (math.atan2(sin, cos) + math.atan2(thinness * sin, cos))
 
 
 @compiled()

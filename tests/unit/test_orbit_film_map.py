@@ -66,6 +66,36 @@ def test_a_map_with_objects_or_other_shapes_is_not_read(tmp_path):
     assert read_map(path) is None
 
 
+def test_an_altered_map_is_solved_again_and_says_so(coarse, tmp_path):
+    made = film_force_map(0.5, cache=tmp_path)
+    path = map_path(0.5, Cavitation.REYNOLDS, tmp_path)
+    with np.load(path) as file:
+        arrays = dict(file)
+    arrays["coefficients"] = arrays["coefficients"] * (1.0 + 1e-12)
+    np.savez(path, **arrays)
+    assert read_map(path) is None
+    again = film_force_map(0.5, cache=tmp_path)
+    np.testing.assert_array_equal(again.coefficients, made.coefficients)
+    assert "damaged" in again.note
+    assert made.note == ""
+    stored = read_map(path)
+    assert stored is not None
+    assert stored.note == ""
+
+
+def test_a_map_cut_short_is_solved_again(coarse, tmp_path):
+    film_force_map(0.5, cache=tmp_path)
+    path = map_path(0.5, Cavitation.REYNOLDS, tmp_path)
+    path.write_bytes(path.read_bytes()[:-100])
+    assert "damaged" in film_force_map(0.5, cache=tmp_path).note
+
+
+def test_maps_of_other_sources_are_passed_over(coarse, tmp_path, monkeypatch):
+    before = map_path(0.5, Cavitation.REYNOLDS, tmp_path)
+    monkeypatch.setattr(film_map, "sources_digest", lambda: "other")
+    assert map_path(0.5, Cavitation.REYNOLDS, tmp_path) != before
+
+
 def test_a_folder_that_cannot_be_written_is_no_obstacle(coarse, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("")
@@ -77,7 +107,7 @@ def test_the_files_name_changes_with_all_that_the_numbers_depend_on(coarse, tmp_
         return map_path(ratio, kind, tmp_path).name
 
     names = {name(), name(0.6), name(kind=Cavitation.HALF_SOMMERFELD)}
-    for setting, value in (("MAP_VERSION", 99), ("_ROWS", 17), ("_MESH", (40, 8))):
+    for setting, value in (("_CROWDING", 2.0), ("_ROWS", 17), ("_MESH", (40, 8))):
         monkeypatch.setattr(film_map, setting, value)
         names.add(name())
     assert len(names) == 6

@@ -39,6 +39,24 @@ def test_map_equals_the_closed_form_to_half_a_permille_of_the_force():
     assert worst < 5e-4
 
 
+@pytest.mark.parametrize("eps", [0.985, 0.99, 0.995, 0.999])
+def test_map_near_the_bush_from_approaching_to_retreating(eps):
+    """The force falls by up to five powers of ten between the two; the error by as many."""
+    layer = np.sqrt(1.0 - eps**2) * np.linspace(-3.0, 3.0, 25)
+    for angle in [*np.linspace(0.0, np.pi, 25), *(0.5 * np.pi + layer)]:
+        exact = np.array(short_bearing_impedance(eps, angle, SLENDERNESS))
+        error = np.linalg.norm(np.array(SHORT.impedance(eps, angle)) - exact)
+        assert error < 3e-3 * np.linalg.norm(exact)
+
+
+def test_past_the_last_row_the_force_grows_as_that_of_a_line_contact():
+    last = np.array(SHORT.impedance(0.9995, 0.3))
+    eps = 0.9999
+    beyond = np.array(SHORT.impedance(eps, 0.3))
+    growth = ((1.0 - 0.9995**2) / (1.0 - eps**2)) ** 1.5
+    np.testing.assert_allclose(np.linalg.norm(beyond) / np.linalg.norm(last), growth, rtol=1e-2)
+
+
 def test_map_converges_with_the_fourth_order():
     def worst(rows, columns):
         coarse = ForceMap.build(
@@ -48,12 +66,11 @@ def test_map_converges_with_the_fourth_order():
             max_eccentricity_ratio=0.9,
         )
         points = [(e, a) for e in np.linspace(0.05, 0.8, 40) for a in np.linspace(0, 6.2, 50)]
-        return max(
-            np.linalg.norm(
-                np.subtract(coarse.impedance(e, a), short_bearing_impedance(e, a, SLENDERNESS))
-            )
-            for e, a in points
-        )
+        errors = []
+        for e, a in points:
+            exact = np.array(short_bearing_impedance(e, a, SLENDERNESS))
+            errors.append(np.linalg.norm(coarse.impedance(e, a) - exact) / np.linalg.norm(exact))
+        return max(errors)
 
     order = np.log2(worst(33, 96) / worst(65, 192))
     assert order == pytest.approx(4.0, abs=0.7)

@@ -24,6 +24,7 @@ from rotorsim.orbit import (
     analyse,
     can_be_mapped,
     film_map,
+    find_equilibrium,
     growth_rate,
     linearize_force,
     loaded_film,
@@ -91,6 +92,40 @@ def test_map_against_the_film_solved_at_any_position_and_velocity(cavitation, mo
             exact = film_state(problem, position, layers, velocity=tuple(velocity)).force
             found = mapped.force(*position, *velocity, SPEED)
             assert np.hypot(*(found - exact)) < 5e-3 * load
+
+
+@pytest.mark.parametrize("eps", [0.985, 0.99, 0.995])
+@pytest.mark.parametrize(
+    "velocity",
+    [(0.0, 0.0), (0.3, 0.0), (-0.3, 0.0), (0.0, 0.4), (0.0, 0.6), (0.02, 0.5), (-0.02, 0.5)],
+    ids=["rest", "approach", "retreat", "slow whirl", "fast whirl", "half, in", "half, out"],
+)
+def test_map_near_the_bush_against_the_film_solved(eps, velocity):
+    """Each force to 1 % of itself: a retreating journal's is four powers of ten smaller."""
+    film = case(mesh=(288, 96))
+    mapped = loaded_film(film, SPEED).force
+    position = (eps * CLEARANCE, 0.0)
+    problem = film_problem(film, SPEED, film.bearing, position)
+    layers = isoviscous_layers(problem.mesh.shape, VISCOSITY)
+    motion = SPEED * CLEARANCE * np.array(velocity)
+    exact = film_state(problem, position, layers, velocity=tuple(motion)).force
+    found = mapped.force(*position, *motion, SPEED)
+    assert np.hypot(*(found - exact)) < 1e-2 * np.hypot(*exact)
+
+
+def test_the_orbit_rests_where_the_solver_finds_the_equilibrium():
+    """Heavily loaded and slow: eccentricity ratio 0.99, 1 % of the clearance left."""
+    film = isothermal_case(
+        LoadTarget(13e3), length_to_diameter=0.6, mesh=(156, 48), viscosity=0.0277,
+        inception="free", radius=0.05, clearance=100e-6,
+    )  # fmt: skip
+    speed = math.pi
+    point, _ = solve_case(film, speed)
+    assert point.eccentricity_ratio == pytest.approx(0.9901, abs=2e-4)
+    rest = find_equilibrium(loaded_film(film, speed).force, (13e3, 0.0), speed)
+    size = math.hypot(*rest) / 100e-6
+    assert 1.0 - size == pytest.approx(1.0 - point.eccentricity_ratio, rel=5e-3)
+    assert math.atan2(rest[1], rest[0]) == pytest.approx(point.attitude_angle, abs=1e-3)
 
 
 def test_an_anchored_film_is_no_function_of_eccentricity_and_squeeze_direction_alone():
