@@ -75,7 +75,7 @@ def compared(name: str, against: str, wanted: float, found: float) -> list[str]:
 def force_map() -> None:
     """The force map against the film solved at the same place and velocity."""
     lines = []
-    for eps in (0.03, 0.1, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95):
+    for eps in (0.03, 0.1, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.985, 0.99, 0.995):
         errors = [_map_errors(kind, eps) for kind in ("reynolds", "half_sommerfeld")]
         lines.append([f"{eps:g}", *(f"{100.0 * e.max():.3f}" for pair in errors for e in pair)])
     head = ("ε", "Reynolds %", "extrapolated %", "half-Sommerfeld %", "extrapolated %")
