@@ -18,7 +18,7 @@ from .equilibrium import find_equilibrium
 from .forces import ActuatedFilm, LinearForce
 from .loads import BaseMotion, HarmonicForce, load_on_rotor, pack_loads
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
-from .problem import OrbitProblem
+from .problem import Method, OrbitProblem
 from .recognition import recognise
 from .right_hand_side import FilmSeries, Rates, initial_state, right_hand_side
 
@@ -172,6 +172,7 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
                 events=run.touch if problem.stop_at_contact else None,
                 rtol=problem.tolerance,
                 atol=run.tolerance,
+                **({} if problem.method is Method.DOP853 else {"jac": _jacobian(run)}),
             )
         except InputError:
             raise
@@ -185,6 +186,33 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
     good = int(np.sum(np.all(np.isfinite(y), axis=0)))
     status = found.status if good == y.shape[1] else -1
     return _Solution(np.asarray(found.t)[:good], y[:, :good], status, str(found.message))
+
+
+def _jacobian(run: _Run) -> Callable[[float, Array], Array]:
+    """Derivatives of the rates by differences, in steps that the film's stiffness shows in.
+
+    The integrators' own steps follow the size of each state: that of a velocity at rest is so
+    small that the force does not change beyond rounding. Newton's method then fails close to the
+    bush, and the run crawls.
+    """
+    problem, size = run.problem, run.problem.rotor.mass.shape[0]
+    least = np.full(run.tolerance.size, 1e-6)
+    least[: 2 * size] *= problem.force.radial_clearance
+    least[:size] *= 1e-2
+    least[size : 2 * size] *= max(problem.schedule.speeds)
+
+    def jacobian(t: float, state: Array) -> Array:
+        before = np.array(run.rates(t, state))
+        steps = least.copy()
+        steps[2 * size :] *= np.maximum(np.abs(state[2 * size :]), 1.0)
+        columns = []
+        for index, step in enumerate(steps):
+            moved = state.copy()
+            moved[index] += step
+            columns.append((run.rates(t, moved) - before) / (moved[index] - state[index]))
+        return np.column_stack(columns)
+
+    return jacobian
 
 
 def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:

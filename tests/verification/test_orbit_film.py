@@ -15,6 +15,7 @@ from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
 from rotorsim.model import LoadTarget
 from rotorsim.orbit import (
+    CallableForce,
     LoadedFilm,
     OrbitProblem,
     OrbitStatus,
@@ -126,6 +127,33 @@ def test_the_orbit_rests_where_the_solver_finds_the_equilibrium():
     size = math.hypot(*rest) / 100e-6
     assert 1.0 - size == pytest.approx(1.0 - point.eccentricity_ratio, rel=5e-3)
     assert math.atan2(rest[1], rest[0]) == pytest.approx(point.attitude_angle, abs=1e-3)
+
+
+def test_a_stiff_run_close_to_the_bush_comes_to_rest():
+    """The film's rates are 9e5 and 14 1/s: 40 s of motion take some hundred steps."""
+    film = isothermal_case(
+        LoadTarget(13e3), length_to_diameter=0.6, mesh=(156, 48), viscosity=0.0277,
+        inception="free", radius=0.05, clearance=100e-6,
+    )  # fmt: skip
+    force, calls = loaded_film(film, math.pi).force, []
+
+    def counted(*motion: float) -> tuple[float, float]:
+        calls.append(motion)
+        return force.force(*motion)
+
+    orbit = simulate(
+        OrbitProblem(
+            CallableForce(counted, 100e-6),
+            Rotor.rigid(1325.0),
+            SpeedSchedule.constant(math.pi, 20.0),
+            static_load=(13e3, 0.0),
+            initial_displacement=(-0.3e-6, 0.0),
+            samples_per_revolution=16,
+        )
+    )
+    assert orbit.status is OrbitStatus.SETTLED
+    assert orbit.min_film[-1] == pytest.approx(0.99e-6, rel=5e-3)
+    assert len(calls) < 20_000
 
 
 def test_an_anchored_film_is_no_function_of_eccentricity_and_squeeze_direction_alone():
