@@ -85,7 +85,7 @@ def map_impedance(
     return math.sinh(radial) * scale, math.sinh(tangential) * scale
 
 
-@numba.njit(cache=True)
+@compiled()
 def map_column(angle: float, thinness: float) -> float:
     """Angular coordinate of the force map [rad]; see `rotorsim.orbit.force_map`."""
     cos, sin = math.cos(angle), math.sin(angle)
