@@ -230,7 +230,7 @@ def solved_flow(solution: FilmSolution) -> FilmFlow:
     """Return the fluxes and liquid fractions of a solved film."""
     if solution.thermal is not None:
         return solution.thermal.energy.flow
-    return film_flow(solution.state, solution.problem.surface_speed)
+    return film_flow(solution.state)
 
 
 def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float]:

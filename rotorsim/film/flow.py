@@ -59,8 +59,9 @@ class FilmFlow:
     fresh_fraction: Array
 
 
-def film_flow(state: FilmState, surface_speed: float) -> FilmFlow:
-    """Fluxes of the film `state`."""
+def film_flow(state: FilmState) -> FilmFlow:
+    """Return the fluxes through every face of the film `state`."""
+    surface_speed = state.problem.surface_speed
     operator, layers, solution = state.operator, state.layers, state.solution
     shape = operator.interior.shape
     step, poiseuille, flux = np.zeros(shape), np.zeros(shape), np.zeros(shape)

@@ -70,7 +70,7 @@ class HeatBalance:
 
 def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
     """The energy equation of the film `state`."""
-    flow = film_flow(state, problem.surface_speed)
+    flow = film_flow(state)
     layers = state.layers.pressure_share.shape[2]
     oil = problem.lubricant
     conductance = (

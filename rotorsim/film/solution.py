@@ -50,7 +50,7 @@ MAX_MESHES = 8
 
 @dataclass(frozen=True)
 class WarmStart:
-    """What the next speed may begin from; picklable, and only ever a first guess.
+    """First guess for the next speed; picklable.
 
     Attributes
     ----------
@@ -71,7 +71,7 @@ class WarmStart:
 
 @dataclass(frozen=True)
 class FilmSolution:
-    """A film at its equilibrium, or the last iterate with the reason.
+    """A film at its equilibrium, or the last iterate with the reason why it is not.
 
     Attributes
     ----------
@@ -112,7 +112,7 @@ class FilmSolution:
 
 @dataclass(frozen=True)
 class _Iterate:
-    """What both kinds of film give back to the search."""
+    """Last iterate of an isothermal or thermal film."""
 
     state: FilmState
     thermal: ThermalFilm | None
@@ -127,7 +127,7 @@ class _Iterate:
 
 
 def solve_film(case: Case, speed: float, *, initial: WarmStart | None = None) -> FilmSolution:
-    """The film of `case` at `speed` [rad/s], at the eccentricity or under the load it asks for."""
+    """Solve the film of `case` at `speed` [rad/s], at its eccentricity ratio or under its load."""
     if case.bearing.is_plain and case.bearing.is_symmetric:
         return _solve_plain(case, speed, initial)
     solution = _solve_general(case, speed, initial)
@@ -176,7 +176,7 @@ def _no_position(failed: FilmSolution, case: Case) -> str:
 
 
 def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
-    """A plain film is solved in the frame of the line of centres and turned afterwards."""
+    """Solve a plain, aligned film, with x along the line of centres."""
     clearance, target = case.bearing.radial_clearance, case.target
     if isinstance(target, EccentricityTarget):
         position = (target.eccentricity_ratio * clearance, 0.0)
@@ -205,7 +205,7 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
 
 @dataclass
 class _Effort:
-    """Meshes follow the position as long as it is known roughly only; the last one is kept."""
+    """Counts meshes and iterations; meshes follow the position while it is known roughly only."""
 
     settled: bool = False
     meshes: int = 0
@@ -213,13 +213,13 @@ class _Effort:
     asked: int = 0
 
     def proceed(self, settled: bool) -> bool:
-        """Whether to go on to the end on a mesh, `settled` if it is the position's own."""
+        """Return whether to iterate to the end on this mesh; `settled`: it suits the position."""
         self.meshes += 1
         self.settled = settled or self.meshes >= MAX_MESHES
         return self.settled
 
     def ends(self, film: _Iterate, *, moved: bool = False) -> bool:
-        """Whether this solution is the last: on its own mesh, or one that led nowhere."""
+        """Return whether this solution is the last: its mesh is kept, or the search gave up."""
         self.iterations += film.iterations
         nowhere = self.meshes == self.asked
         self.asked = self.meshes
@@ -228,27 +228,27 @@ class _Effort:
 
 
 def _cold_start(problem: FilmProblem, displacement: Array, search: Search) -> WarmStart:
-    """Position of the isothermal film, for a thermal one to begin at."""
+    """Return the isothermal film's position, at which a thermal search begins."""
     cold = _iterate_isothermal(problem, displacement, search, None, lambda _: False)
     displacement = cold.state.displacement if cold.converged else displacement
     return WarmStart(_pair(displacement), None, cold.state.solution.full)
 
 
 def graded_eccentricity(eps: float) -> float:
-    """Eccentricity ratio for which the mesh is graded: one of a few, so that it does not drift."""
+    """Round the eccentricity ratio to one of a few for which meshes are graded."""
     step = 0.25
     return 1.0 - math.exp(-step * round(-math.log(1.0 - eps) / step))
 
 
 def _load_line(state: FilmState) -> float:
-    """Angle from the load line to the film frame's x axis, the load being what the film carries."""
+    """Return the angle from the load line, along which the film carries, to the film's x axis."""
     if not state.force.any():
         return 0.0
     return -math.atan2(-state.force[1], -state.force[0])
 
 
 def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
-    """Any other film is solved in the load frame; a misaligned plain one near its centre's."""
+    """Solve any other film, in the load frame; a misaligned plain one along its line of centres."""
     position = initial.position if initial else _first_position(case)
     warm, effort = initial, _Effort()
     while True:
@@ -279,7 +279,7 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
 
 
 def _inside(problem: FilmProblem, search: Search, position: Position) -> Position:
-    """A first position with film all round, nearer to the centre if need be."""
+    """Return a first position that leaves a film everywhere, nearer to the centre if need be."""
     for share in (1.0, 0.7, 0.4, 0.0):
         nearer = (share * position[0], share * position[1])
         if problem.geometry.thinnest_at(np.array(nearer)) > 0.0:
@@ -312,12 +312,12 @@ def _first_position(case: Case) -> Position:
 
 
 def _frame_angle(bearing: Bearing, position: Position) -> float:
-    """0, or the line of centres' angle for a misaligned plain bearing: its film begins opposite."""
+    """Return the film frame's angle: that of the line of centres for a plain bearing, else 0."""
     return math.atan2(position[1], position[0]) if bearing.is_plain else 0.0
 
 
 def _graded_position(bearing: Bearing, position: Position) -> Position:
-    """Position for which the mesh is graded, on a grid as fine as the film is thin."""
+    """Round a position to a grid, as fine as the film is thin, for which meshes are graded."""
     thin = float(mid_thickness(bearing, np.linspace(0.0, 2.0 * math.pi, 361), position).min())
     relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
     grid = 2.0 ** math.floor(math.log2(relative / 2.0)) * bearing.radial_clearance
@@ -364,7 +364,7 @@ def _iterate_isothermal(
     initial: WarmStart | None,
     proceed: Callable[[Array], bool] | None = None,
 ) -> _Iterate:
-    """The film at the supply temperature's viscosity."""
+    """Iterate the position of a film of the supply temperature's viscosity."""
     viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
     layers = isoviscous_layers(problem.mesh.shape, viscosity)
     full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
@@ -395,7 +395,7 @@ def _iterate_isothermal(
 def _conclude(
     problem: FilmProblem, film: _Iterate, frame: float, search: Search | None, iterations: int
 ) -> FilmSolution:
-    """Say how it ended."""
+    """Map the last iterate to a `SolveStatus` with its message."""
     status, message = SolveStatus.CONVERGED, ""
     if not film.state.solution.pressure.max() > 0.0 or not film.state.solution.full.any():
         status = SolveStatus.STARVED

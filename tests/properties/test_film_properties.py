@@ -225,7 +225,7 @@ def test_oil_is_conserved(eps, bore, cavitation):
     solution = solve_film(case, 100.0)
     assert solution.status is SolveStatus.CONVERGED, solution.message
     state = solution.state
-    flow = film_flow(state, solution.problem.surface_speed)
+    flow = film_flow(state)
     net = flow.flux[0] - flow.flux[1] + flow.flux[2] - flow.flux[3]
     net = np.where(state.operator.fixed, 0.0, net)
     film = ~state.operator.fixed

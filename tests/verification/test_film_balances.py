@@ -58,8 +58,8 @@ def _net(flow) -> np.ndarray:
 def test_every_cell_passes_on_what_it_receives(solved):
     """Full cells by continuity, ruptured ones by their liquid."""
     _, solution = solved
-    state, problem = solution.state, solution.problem
-    flow = film_flow(state, problem.surface_speed)
+    state = solution.state
+    flow = film_flow(state)
     scale = np.abs(flow.flux).max()
     net = np.where(state.operator.fixed, 0.0, _net(flow))
     assert np.abs(net[state.solution.full]).max() < MASS_BALANCE * scale
@@ -71,7 +71,7 @@ def test_every_cell_passes_on_what_it_receives(solved):
 def test_neighbours_agree_on_the_flow_between_them(solved):
     """What leaves a cell eastwards enters the next, but where fresh oil makes up the difference."""
     _, solution = solved
-    flow = film_flow(solution.state, solution.problem.surface_speed)
+    flow = film_flow(solution.state)
     interior, scale = solution.state.operator.interior, np.abs(flow.flux).max()
     same = interior[0] & ~flow.inlet
     step = np.abs(flow.flux[0] - np.roll(flow.flux[1], 1, axis=0))
@@ -124,7 +124,7 @@ def test_friction_power_is_the_dissipation(solved):
     point = operating_point(case, SPEED, solution)
     state = solution.state
     # Power of the supply: pressure times the oil that enters from the grooves.
-    flux = film_flow(state, solution.problem.surface_speed).flux
+    flux = film_flow(state).flux
     operator, into = state.operator, (1.0, -1.0, 1.0, -1.0)
     pumped = solution.problem.mesh.multiplicity * sum(
         sign * float(np.sum(np.where(operator.fixed, 0.0, operator.fixed_pressure[f] * flux[f])))
