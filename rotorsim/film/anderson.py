@@ -40,7 +40,7 @@ class AndersonMixer:
         self._started = False
 
     def next(self, x: Array, g: Array) -> Array:
-        """Give the next x; `x` and `g` = g(x) are flat and are not changed."""
+        """Return the next x; `x` and `g` = g(x) are flat and are not changed."""
         if self._started:
             products, right = np.zeros(self._depth), np.zeros(self._depth)
             filled = min(self._filled + 1, self._depth)
@@ -69,7 +69,7 @@ class AndersonMixer:
         if not np.all(scale > 0.0):
             return None
         scaled = gram / scale[:, None] / scale[None, :]
-        # A hair of regularisation keeps nearly parallel histories from blowing up the mix.
+        # A little regularisation keeps nearly parallel histories from blowing up the mix.
         scaled[np.diag_indices_from(scaled)] += 1e-10
         try:
             weights = np.linalg.solve(scaled, right / scale) / scale

@@ -42,16 +42,19 @@ class BushOperator:
     profile: Array
 
     def bore_rise(self, flux: Array) -> Array:
-        """Bore temperature above ambient [K], (n, m), for the heat flux into it [W/m2]."""
+        """Return the bore temperature above ambient [K], (n, m), for a heat flux into it [W/m2]."""
         return self._apply(self.resistance, flux)
 
     def field(self, flux: Array) -> Array:
-        """Temperature above ambient of every cell [K], (n, m, l), for the same."""
+        """Return the temperature above ambient of every cell [K], (n, m, l), for the same flux."""
         modes = self._modes(flux)[:, :, None] * self.profile
         return np.einsum("ip,jq,pql->ijl", self.around, self.along, modes, optimize=True)
 
     def robin_rise(self, reference: Array, conductance: float) -> Array:
-        """Bore temperature above ambient [K] if the heat flux is conductance (reference - bore)."""
+        """Return the bore temperature above ambient [K] under a Robin condition.
+
+        The heat flux is conductance (reference - bore).
+        """
         exchange = self.resistance * conductance
         return self._apply(exchange / (1.0 + exchange), reference)
 
@@ -122,15 +125,15 @@ def bush_operator(
 
 
 def _ring_modes(dtheta: Array) -> tuple[Array, Array]:
-    gap = 0.5 * (dtheta + np.roll(dtheta, -1))
+    spacing = 0.5 * (dtheta + np.roll(dtheta, -1))
     n = dtheta.size
     matrix = np.zeros((n, n))
     for i in range(n):
         k = (i + 1) % n
-        matrix[i, i] += 1.0 / gap[i]
-        matrix[k, k] += 1.0 / gap[i]
-        matrix[i, k] -= 1.0 / gap[i]
-        matrix[k, i] -= 1.0 / gap[i]
+        matrix[i, i] += 1.0 / spacing[i]
+        matrix[k, k] += 1.0 / spacing[i]
+        matrix[i, k] -= 1.0 / spacing[i]
+        matrix[k, i] -= 1.0 / spacing[i]
     return _weighted_modes(matrix, dtheta)
 
 
@@ -153,14 +156,14 @@ def _open_modes(
 
 
 def _weighted_modes(matrix: Array, weights: Array) -> tuple[Array, Array]:
-    """Eigenvalues and vectors of matrix v = lambda diag(weights) v."""
+    """Return eigenvalues and vectors of matrix v = lambda diag(weights) v."""
     root = np.sqrt(weights)
     values, vectors = eigh(matrix / root[:, None] / root[None, :])
     return np.maximum(values, 0.0), vectors / root[:, None]
 
 
 def _first_column(diagonal: Array, links: Array) -> Array:
-    """Solutions of the tridiagonal systems with a unit source in the first cell, (n, m, l)."""
+    """Solve the tridiagonal systems with a unit source in the first cell, (n, m, l)."""
     layers = diagonal.shape[2]
     ratio = np.zeros_like(diagonal)
     pivot = diagonal[:, :, -1]

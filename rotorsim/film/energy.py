@@ -86,7 +86,7 @@ def dissipation(
     flow: FilmFlow,
     surface_speed: float,
 ) -> Array:
-    """Multipliers of a layer's dissipation, per cell: (3, n, m).
+    """Return the multipliers of a layer's dissipation, per cell: (3, n, m).
 
     The shear stress is tau = h p' (z - G) + U/(h F_0) around and h p' (z - G) along the axis; the
     power in a layer, int h tau^2/mu dz over the cell, is thus
@@ -108,21 +108,9 @@ def dissipation(
 
 @kernel
 def _heating(
-    interior,
-    conductance,
-    face_h,
-    spacing,
-    fixed,
-    area,
-    dx,
-    dy,
-    h,
-    f0,
-    step,
-    fraction,
-    speed,
+    interior, conductance, face_h, spacing, fixed, area, dx, dy, h, f0, step, fraction, speed,
     heating,
-):
+):  # fmt: skip
     n, m = area.shape
     for i in range(n):
         for j in range(m):
@@ -219,7 +207,7 @@ def _sweep(
         after = i + 1 if i < n - 1 else 0
         for s in range(m):
             j = axial_order[s]
-            if fixed[i, j] or conductance[i, j] == 0.0:  # a groove, or not a drop of oil
+            if fixed[i, j] or conductance[i, j] == 0.0:  # a groove, or no oil at all
                 continue
             south, north = max(j - 1, 0), min(j + 1, m - 1)
             # Weights of the extrapolation from centre to the face downstream, where this cell and

@@ -114,7 +114,7 @@ class FilmGeometry:
 
     def thinnest(self, thickness: Array) -> float:
         """Smallest film thickness [m] on any face or centre of the lands."""
-        return float(thickness[:, self.land].min())
+        return float(np.min(thickness, where=self.land, initial=np.inf))
 
     def thinnest_at(self, q: Array) -> float:
         """Smallest film thickness [m] of the lands at `q`; not positive where the walls touch."""

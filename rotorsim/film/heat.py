@@ -69,7 +69,7 @@ class HeatBalance:
 
 
 def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
-    """The energy equation of the film `state`."""
+    """Build the energy equation of the film `state`."""
     flow = film_flow(state)
     layers = state.layers.pressure_share.shape[2]
     oil = problem.lubricant
@@ -104,9 +104,9 @@ def energy_problem(problem: FilmProblem, state: FilmState) -> EnergyProblem:
 
 
 def _carry_over(problem: FilmProblem, state: FilmState, flow: FilmFlow) -> Array:
-    """Part of the oil entering each column from the one before.
+    """Return the part of the oil entering each column that comes from the one before.
 
-    None where new oil enters. A film that re-forms behind the inception of its own stretch goes on
+    Zero where new oil enters. A film that re-forms behind the inception of its own stretch goes on
     with the oil that the ruptured film brought, as far as that reaches: otherwise fresh oil would
     come and go with every cell that ruptures there, and no temperature field would satisfy it.
     """
@@ -119,7 +119,7 @@ def _carry_over(problem: FilmProblem, state: FilmState, flow: FilmFlow) -> Array
 
 
 def _march_order(problem: FilmProblem, flow: FilmFlow) -> NDArray[np.int64]:
-    """Columns from the one where most lines take in new oil, round in the direction of rotation."""
+    """Order the columns from the one where most lines take in new oil, with the rotation."""
     entering = flow.inlet.sum(axis=1)
     first = int(np.argmax(entering)) if entering.any() else 0
     n = problem.mesh.shape[0]
@@ -127,7 +127,7 @@ def _march_order(problem: FilmProblem, flow: FilmFlow) -> NDArray[np.int64]:
 
 
 def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
-    """Volume flux of every layer [m3/s] through one face of the chosen cells, (cells, k)."""
+    """Return every layer's flux [m3/s] through one face of the chosen cells, (cells, k)."""
     flow, layers = energy.flow, energy.layers
     i, j = np.nonzero(cells)
     n, m = cells.shape
@@ -149,7 +149,7 @@ def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
 
 
 def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature: Array) -> Array:
-    """Temperature of the oil that enters through each face behind which no film lies [K].
+    """Return the temperature of the oil entering where no film lies behind a face [K].
 
     (4, n, m). ``fresh``: the supply's. ``mixing``: in every groove or slot the oil that arrives
     mixes with as much supplied oil as is missing. ``periodic``: as ``fresh`` where no film lies
@@ -174,36 +174,38 @@ def _mixed(
     """Mix what arrives in each groove or slot with as much fresh oil as is missing there."""
     groove_source = _groove_source(problem, energy)
     count = len(problem.bearing.grooves) + 1
-    taken, given, heat, supply = (np.zeros(count) for _ in range(4))
+    taken, given, heat, supply = np.zeros((4, count))
     for face in (WEST, EAST, SOUTH, NORTH):
         open_ = groove_source[face] >= 0
-        into = layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
         number = groove_source[face][open_]
-        arriving, leaving = np.maximum(into, 0.0), np.maximum(-into, 0.0)
-        arriving *= energy.flow.fresh_fraction[open_][:, None]
-        np.add.at(given, number, arriving.sum(axis=1))
-        np.add.at(heat, number, (arriving * temperature[open_]).sum(axis=1))
-        np.add.at(taken, number, leaving.sum(axis=1))
-        np.add.at(supply, number, leaving.sum(axis=1) * supplied[face][open_])
+        if not number.size:
+            continue
+        into = layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
+        leaving = np.maximum(-into, 0.0).sum(axis=1)
+        arriving = np.maximum(into, 0.0) * energy.flow.fresh_fraction[open_][:, None]
+        brought = np.sum(arriving * temperature[open_], axis=1)
+        given += np.bincount(number, arriving.sum(axis=1), count)
+        heat += np.bincount(number, brought, count)
+        taken += np.bincount(number, leaving, count)
+        supply += np.bincount(number, leaving * supplied[face][open_], count)
     kept = problem.thermal.hot_oil_carry_over
     given, heat = kept * given, kept * heat
     fresh = np.maximum(taken - given, 0.0)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         value = (heat + fresh * supply / taken) / (given + fresh)
     mixed = supplied.copy()
-    for face in range(4):
-        here = (groove_source[face] >= 0) & (taken > 0.0)[np.maximum(groove_source[face], 0)]
-        mixed[face][here] = value[groove_source[face][here]]
+    here = (groove_source >= 0) & (taken > 0.0)[np.maximum(groove_source, 0)]
+    mixed[here] = value[groove_source[here]]
     return mixed
 
 
 def _exits(energy: EnergyProblem) -> NDArray[np.bool_]:
-    """Cells whose east face leads into a groove, a slot or a re-formed film's inlet."""
+    """Find the cells whose east face leads into a groove, a slot or a re-formed film's inlet."""
     return (~energy.interior[EAST] | np.roll(energy.flow.inlet, -1, axis=0)) & ~energy.fixed
 
 
 def _groove_source(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.int64]:
-    """Number of the groove behind each face, (4, n, m); -1 for none.
+    """Return the number of the groove behind each face, (4, n, m); -1 for none.
 
     A slot, or the start of a film that begins anywhere, counts as one groove more.
     """
@@ -223,9 +225,9 @@ def _groove_source(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.in
 
 
 def with_groove_oil(problem: FilmProblem, temperature: Array, inlet_temperature: Array) -> Array:
-    """Film temperature (n, m, k) with that of the oil which each groove hands on in its cells.
+    """Return the film temperature (n, m, k) with each groove's outlet temperature in its cells.
 
-    The film's equations know nothing of a groove's inside; for what is shown and told.
+    For figures and results: the film's equations do not cover the inside of grooves.
     """
     supply, filled = problem.mesh.supply, temperature.copy()
     for number in range(len(problem.bearing.grooves)):
@@ -237,7 +239,7 @@ def with_groove_oil(problem: FilmProblem, temperature: Array, inlet_temperature:
 
 
 def dissipated_power(energy: EnergyProblem) -> float:
-    """Power that the film turns into heat, over the meshed part [W]."""
+    """Return the power that the film turns into heat, over the meshed part [W]."""
     # Summed over the layers: int (z - G)^2/mu = F_2, int (z - G)/mu = 0, int 1/mu = F_0.
     layers = energy.layers
     return float(np.sum(energy.heating[2] * layers.f2 + energy.heating[0] * layers.f0))
@@ -269,21 +271,25 @@ def loss_per_degree(problem: FilmProblem, energy: EnergyProblem, walls: Walls) -
 
     Oil that comes round brings its heat back through the inlets.
     """
-    warmer = np.ones(energy.layers.pressure_share.shape)
-    back = np.zeros((4, *problem.mesh.shape))
+    n, m, layers = energy.layers.pressure_share.shape
+    warmer = np.ones((n, m, layers))
+    back = np.zeros((4, n, m))
     if problem.thermal.inlet is InletModel.MIXING:
         back = _mixed(problem, energy, warmer, back)
     oil = _enthalpy_out(energy, warmer, back, np.stack([warmer, warmer]))
     to_bush = 0.0
     if not walls.bush.insulated:
-        to_bush = 4.0 * float(energy.conductance.sum()) / warmer.shape[2]
+        to_bush = 4.0 * float(energy.conductance.sum()) / layers
     return max(energy.heat_capacity * oil, 0.0) + to_bush
 
 
 def _enthalpy_out(
     energy: EnergyProblem, temperature: Array, inlet_temperature: Array, leaving: Array
 ) -> float:
-    """Enthalpy through all faces behind which no film lies, over rho c_p [m3 K/s], outward."""
+    """Return the enthalpy flow out of the film over rho c_p [m3 K/s].
+
+    Through all faces behind which no film lies.
+    """
     total = 0.0
     before = np.roll(leaving[0], 1, axis=0)
     for face, outward in ((WEST, -1.0), (EAST, 1.0), (SOUTH, -1.0), (NORTH, 1.0)):

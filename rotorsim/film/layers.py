@@ -64,7 +64,7 @@ def isoviscous_layers(shape: tuple[int, int], viscosity: float) -> LayerIntegral
 
 
 def layer_integrals(viscosity: Array) -> LayerIntegrals:
-    """Integrals of the (n, m, k) viscosity field [Pa s], equal layers."""
+    """Integrate across the film for a viscosity field (n, m, k) [Pa s] on equal layers."""
     n, m, k = viscosity.shape
     f0, f2, g = np.empty((n, m)), np.empty((n, m)), np.empty((n, m))
     pressure_share, shear_share = np.empty((n, m, k)), np.empty((n, m, k))

@@ -320,9 +320,11 @@ def _apply(
     # A film that feeds itself is marched round several times; else the fixed point does the rest.
     passes = 3 if problem.thermal.inlet is InletModel.PERIODIC else 1
     bounds = WallTemperatures(heat.bush, heat.shaft, walls.bush.insulated)
-    _, leaving = march(
+    moved, leaving = march(
         energy, viscosity, bounds, inlet, temperature, passes=passes, leaving=leaving
     )
+    if passes > 1:
+        moved = float(np.abs(temperature - heat.temperature).max())
     if walls.shaft.floats and len(progress.history) % LOSS_EVERY == 0:
         progress.loss = loss_per_degree(problem, energy, walls)
     bush = FilmContact.bush(energy, temperature)
@@ -332,7 +334,7 @@ def _apply(
         walls.bush.respond(heat.bush, bush),
         float(walls.shaft.respond(np.array(heat.shaft), shaft)),
     )
-    change = _change(problem, heat, mapped)
+    change = _change(problem, heat, mapped, moved)
     passed = float(np.sum(walls.bush.exchange(bush) * np.abs(mapped.bush - heat.bush)))
     passed += float(walls.shaft.exchange(shaft) * abs(mapped.shaft - heat.shaft))
     made = dissipated_power(energy)
@@ -340,15 +342,15 @@ def _apply(
     return _Step(state, viscosity, energy, inlet, leaving, mapped, residual)
 
 
-def _change(problem: FilmProblem, heat: Heat, mapped: Heat) -> float:
+def _change(problem: FilmProblem, heat: Heat, mapped: Heat, moved: float) -> float:
     """Return the largest change of log viscosity anywhere, as the oil thins fastest.
 
-    An oil that does not thin, or hardly warms, still has a temperature to settle: its change counts
-    too, relative to the field's spread.
+    `moved` is the film's largest change of temperature [K]. An oil that does not thin, or hardly
+    warms, still has a temperature to settle: its change counts too, relative to the field's spread.
     """
     coldest, hottest = float(mapped.temperature.min()), float(mapped.temperature.max())
     change = max(
-        float(np.abs(mapped.temperature - heat.temperature).max()),
+        moved,
         float(np.abs(mapped.bush - heat.bush).max()),
         abs(mapped.shaft - heat.shaft),
     )

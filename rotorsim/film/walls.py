@@ -33,44 +33,47 @@ class FilmContact:
 
     Attributes
     ----------
+    energy : EnergyProblem
     film : (n, m) array
         Temperature of the layer next to the wall [K].
-    bulk : (n, m) array
-        Conductance k A/h of the whole film's thickness, by the oil in it [W/K].
-    layers : int
-        Layers across the film; the wall lies half a layer from the first centre.
-    area : (n, m) array
-        [m2]
     elsewhere : float
         Heat that the film loses to oil and other wall per degree that it warms [W/K], estimated.
     """
 
+    energy: EnergyProblem
     film: Array
-    bulk: Array
-    layers: int
-    area: Array
     elsewhere: float = math.inf
 
     @classmethod
     def bush(cls, energy: EnergyProblem, temperature: Array) -> FilmContact:
         """Return the contact with the bush of a film at `temperature`, (n, m, k) [K]."""
-        return cls._of(energy, temperature[:, :, 0])
+        return cls(energy, temperature[:, :, 0])
 
     @classmethod
     def shaft(
         cls, energy: EnergyProblem, temperature: Array, elsewhere: float = math.inf
     ) -> FilmContact:
         """Return the contact with the shaft."""
-        return cls._of(energy, temperature[:, :, -1], elsewhere)
+        return cls(energy, temperature[:, :, -1], elsewhere)
 
-    @classmethod
-    def _of(cls, energy: EnergyProblem, film: Array, elsewhere: float = math.inf) -> FilmContact:
-        layers, area = energy.layers.pressure_share.shape[2], energy.dx[:, None] * energy.dy
-        return cls(film, energy.conductance / layers, layers, area, elsewhere)
+    @property
+    def layers(self) -> int:
+        """Layers across the film; the wall lies half a layer from the first centre."""
+        return self.energy.layers.pressure_share.shape[2]
+
+    @property
+    def bulk(self) -> Array:
+        """Conductance k A/h of the whole film's thickness, by the oil in it [W/K], (n, m)."""
+        return self.energy.conductance / self.layers
+
+    @property
+    def area(self) -> Array:
+        """Of each cell [m2], (n, m)."""
+        return self.energy.dx[:, None] * self.energy.dy
 
     def heat(self, wall: Array | float) -> Array:
         """Return the heat that each cell gives to a wall at temperature `wall` [W], (n, m)."""
-        return 2.0 * self.layers * self.bulk * (self.film - wall)
+        return 2.0 * self.energy.conductance * (self.film - wall)
 
 
 @dataclass(frozen=True)
