@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError
 from ..rotor import Rotor
+from ..rotor.rotor import MATRICES
+from .banded import BandForm
 from .matrices import first_order
 from .support import Matrices, Support, common_speeds
 
@@ -155,6 +157,17 @@ class Machine:
             d[block] += damping
             m[block] += mass
         return m, d, k
+
+    @cached_property
+    def band_form(self) -> BandForm:
+        """Order of the unknowns in which the machine's matrices have a narrow band."""
+        n, rotor = self.rotor.size, self.rotor
+        pattern = np.zeros((self.size, self.size), dtype=bool)
+        for name in MATRICES:
+            pattern[:n, :n] |= getattr(rotor, name) != 0.0
+        for place in self._places:
+            pattern[place[:, None], place] = True
+        return BandForm.of(pattern)
 
     def state_matrix(self, speed: ArrayLike) -> Array:
         """State matrix on the displacements, then the velocities of the unknowns with mass.

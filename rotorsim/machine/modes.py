@@ -49,9 +49,8 @@ def modes(machine: Machine, speed: ArrayLike | None = None, count: int | None = 
     if spectrum.complete:
         found = track_modes(spectrum, speeds)
     else:
-        # Some more, among which those that are wanted may come and go.
+        # There are some more, among which those that are wanted may come and go.
         wanted = spectrum.count
-        spectrum = replace(spectrum, count=wanted + max(4, wanted // 4))
         found = track_modes(spectrum, speeds, wanted=2 * wanted)
         reach = np.argsort(found.undamped_frequency.min(axis=0), kind="stable")
         found = found.columns(np.sort(reach[: 2 * wanted]))

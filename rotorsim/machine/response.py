@@ -15,6 +15,10 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
+_AT_ONCE = 64
+"""Speeds whose matrices are held at once; bounds the memory."""
+
+
 @dataclass(frozen=True, eq=False)
 class UnbalanceResponse:
     """Synchronous motion q = Re(Q exp(i Omega t)) over speed.
@@ -71,13 +75,34 @@ def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> Unba
     omega = machine.speeds if speed is None else np.atleast_1d(np.asarray(speed, dtype=float))
     force = np.zeros((omega.size, machine.size, 1), dtype=complex)
     force[:, : machine.rotor.size, 0] = machine.rotor.unbalance_force(omega)
+    amplitude = np.full((omega.size, machine.size), np.nan, dtype=complex)
+    for start in range(0, omega.size, _AT_ONCE):
+        part = slice(start, start + _AT_ONCE)
+        amplitude[part] = _solve(machine, omega[part], force[part])
+    return UnbalanceResponse(machine, omega, amplitude)
+
+
+def _solve(machine: Machine, omega: Array, force: ComplexArray) -> ComplexArray:
+    """Amplitudes (n, size) at speeds (n,) under forces (n, size, 1); NaN: not known."""
+    from scipy.linalg import solve_banded
+
+    w, form = omega[:, None, None], machine.band_form
+    narrow = form.narrow and not machine.frequency_dependent
     if machine.frequency_dependent:
-        z = np.array([machine.dynamic_stiffness(1j * w, float(w)) for w in omega])
+        z = np.array([machine.dynamic_stiffness(1j * one, float(one)) for one in omega])
     else:
-        w = omega[:, None, None]
-        mass, damping, stiffness = machine.matrices(omega)
+        parts = machine.matrices(omega)
+        mass, damping, stiffness = map(form.pack, parts) if narrow else parts
         z = stiffness + 1j * w * damping - w**2 * mass
     known = np.isfinite(z).all(axis=(-2, -1))
-    amplitude = np.full((omega.size, machine.size), np.nan, dtype=complex)
-    amplitude[known] = np.linalg.solve(z[known], force[known])[..., 0]
-    return UnbalanceResponse(machine, omega, amplitude)
+    found = np.full((omega.size, machine.size), np.nan, dtype=complex)
+    if not narrow:
+        found[known] = np.linalg.solve(z[known], force[known])[..., 0]
+        return found
+    width = (form.width, form.width)
+    for i in np.flatnonzero(known):
+        right = np.empty(machine.size, dtype=complex)
+        right[form.place] = force[i, :, 0]
+        solved = solve_banded(width, z[i], right, overwrite_ab=True, check_finite=False)
+        found[i] = solved[form.place]
+    return found

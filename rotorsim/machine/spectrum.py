@@ -134,7 +134,11 @@ def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:
 
 
 def lowest_eigenmodes(
-    mass: Array, damping: Array, stiffness: Array, count: int, speed: float = 0.0
+    mass: Array,
+    damping: Array,
+    stiffness: Array,
+    count: int,
+    speed: float = 0.0,
 ) -> Eigenmodes:
     """Lowest modes of M q'' + D q' + K q = 0: 2 `count` or a few more, ascending in modulus.
 
@@ -175,15 +179,12 @@ def lowest_eigenmodes(
         if good.sum() >= 2 * count or size >= most:
             break
         size = min(size + _EXTRA, most)
+    # Complete is what lies nearer to the shift than any eigenvalue not yet found.
+    reach = np.abs(values[~good] + 1.0).min(initial=np.inf) - 1.0
     keep = np.flatnonzero(good)
     keep = keep[np.argsort(np.abs(values[keep]), kind="stable")]
-    last = min(2 * count, keep.size)
-    # Both of a conjugate pair.
-    while (
-        0 < last < keep.size
-        and values[keep[last - 1]].imag > 0.0
-        and np.isclose(values[keep[last - 1]].conjugate(), values[keep[last]], rtol=1e-6)
-    ):
+    last = max(2 * count, int(np.sum(np.abs(values[keep]) <= reach)))
+    if last < keep.size and np.isclose(values[keep[last]], values[keep[last - 1]].conj()):
         last += 1
     keep = keep[:last]
     values, x = values[keep], vectors[:n, keep]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..model.shaft import STEEL, Disc, Material, Section
+from ..threads import on_one_blas_thread
 from .rotor import Node, Rotor
 
 Array = NDArray[np.float64]
@@ -339,6 +340,7 @@ def element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Arra
     )
 
 
+@on_one_blas_thread
 def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: int) -> float:
     """Largest relative change of natural frequencies when every element is halved.
 

@@ -266,3 +266,22 @@ def test_complex_matrices_are_refused_unless_they_are_real():
         Rotor.from_matrices(np.eye(4), k * (1.0 + 0.02j))
     found = Rotor.from_matrices(np.eye(4), k + 0j)
     assert found.stiffness.dtype == float
+
+
+def test_another_shaft_keeps_the_disc_of_a_jeffcott_scenario():
+    """The total mass of the scenario's rotor, disc and journal, is not the disc's."""
+    from scenario_texts import BEARING, CONSTANT_OIL
+
+    from rotorsim.cli.stability_options import wanted_rotor
+    from rotorsim.files.scenario import Scenario
+
+    scenario = Scenario.from_text(
+        f'{BEARING}\n{CONSTANT_OIL}\n[operating]\nspeed = "6000 rpm"\nload = "10 kN"\n'
+        '[rotor]\nkind = "jeffcott"\ndisc_mass = "550 kg"\njournal_mass = "60 kg"\n'
+        'shaft_stiffness = "600 MN/m"\ndisc_damping = "500 N*s/m"\n'
+    )
+    found = wanted_rotor(scenario, None, "200 MN/m", None, None, None)
+    assert found == Rotor.jeffcott(550.0, 2e8, 60.0, 500.0)
+    given = wanted_rotor(scenario, 400.0, "200 MN/m", None, None, None)
+    assert given == Rotor.jeffcott(400.0, 2e8)
+    assert wanted_rotor(scenario, None, None, None, None, None) == scenario.rotor

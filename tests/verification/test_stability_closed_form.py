@@ -174,3 +174,17 @@ def test_second_order_matrix_is_the_rigid_rotor():
     assert np.allclose(full, state_matrix(k, c, 3.0), rtol=1e-15, atol=0.0)
     with pytest.raises(InputError, match="mass"):
         state_matrix(k, c, -1.0)
+
+
+def test_rounding_errors_of_a_film_without_direct_stiffness_make_no_critical_mass():
+    """Full Sommerfeld: K_xx = K_yy = 0 but for rounding, so that no mass is stable."""
+    rng = np.random.default_rng(3)
+    cross = np.array([[0.0, 1.0], [-1.0, 0.0]])
+    stiffness = 5e8 * (cross + 1e-14 * rng.standard_normal((200, 2, 2)))
+    damping = 1e6 * (np.eye(2) + 1e-14 * rng.standard_normal((200, 2, 2)))
+    found = rigid_thresholds(stiffness, damping, 1000.0)
+    assert set(found.stability.tolist()) == {"always_unstable"}
+    assert np.isnan(found.critical_mass).all()
+    assert not routh_coefficients(stiffness, damping).stable(1e-12).any()
+    small = rigid_thresholds(5e8 * (cross + 1e-6 * np.eye(2)), 1e6 * np.eye(2), 1000.0)
+    assert small.stability == "threshold"
