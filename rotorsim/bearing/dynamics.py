@@ -319,7 +319,8 @@ def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
     inertia = np.zeros((size, size)) if dynamics.mass is None else dynamics.mass.copy()
     inertia[[0, 1], [0, 1]] += mass
     # In units of the stiffnesses and the shaft's frequency all entries are of order one.
-    scale = 1.0 / np.sqrt(np.abs(np.diag(dynamics.stiffness)))
+    diagonal = np.abs(np.diag(dynamics.stiffness))
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, diagonal.max()))
     scaling, omega = scale[:, None] * scale[None, :], dynamics.speed
     k, c, m = (part * scaling for part in (dynamics.stiffness, dynamics.damping, inertia))
     eye, none = np.eye(size), np.zeros((size, size))

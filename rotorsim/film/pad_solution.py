@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
-from ..model import Case
+from ..model import Case, EccentricityTarget
 from ..status import SolveStatus
-from .banded import NoFilmError
+from .banded import NoFilmError, SingularFilmError
 from .heat import Heat
 from .layers import LayerIntegrals, isoviscous_layers, layer_integrals
 from .pads import PadSearch
@@ -25,6 +27,10 @@ THERMAL_FORCE_TOLERANCE = 1e-7
 MAX_STEPS = 80
 MAX_REVISIONS = 6
 """Times that the set of unloaded pads may be revised."""
+ATTITUDES = 24
+"""Directions in which the journal is tried where Newton's method finds no attitude."""
+MAX_RETRIES = 2
+"""Times that a thermal film is solved which does not converge."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,10 @@ def solve_pads(case: Case, speed: float, *, initial: WarmStart | None = None) ->
         thermal = _thermal(search, search.settle(q, _warm_layers(problem, heat)), heat)
         return _conclude(search, thermal.state, thermal, None)
     supply = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    cold = _isothermal(search, q, isoviscous_layers(problem.mesh.shape, supply))
+    layers = isoviscous_layers(problem.mesh.shape, supply)
+    cold = _isothermal(search, q, layers)
+    if isinstance(case.target, EccentricityTarget) and not cold.converged:
+        cold = _by_attitude(search, layers) or replace(cold, unreachable=True)
     if not problem.is_thermal or not cold.converged:
         return _conclude(search, cold.state, None, cold)
     thermal = _thermal(search, cold.state.displacement, uniform_heat(problem))
@@ -94,11 +103,9 @@ def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
             revisions += 1
             q, full, best = search.settle(q, layers), None, np.inf
             continue
-        if off < FORCE_TOLERANCE and search.needs_sampling(q) and revisions < MAX_REVISIONS:
-            # Pads whose root only a search shows: once more, at the position found.
-            revisions += 1
-            before, settled = search.unloaded, search.settle(q, layers)
-            if search.unloaded != before:
+        if off < FORCE_TOLERANCE:
+            settled = search.revived(q, layers)
+            if settled is not None:
                 q, full, best = settled, None, np.inf
                 continue
         if off < FORCE_TOLERANCE or search.unreachable or step >= MAX_STEPS:
@@ -110,6 +117,41 @@ def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
         q = following
 
 
+def _by_attitude(search: PadSearch, layers: LayerIntegrals) -> _Cold | None:
+    """Look all round for the attitude at which the force opposes the load; None without one."""
+    search.held = True
+
+    def misfit(angle: float) -> float:
+        q = search.at(angle)
+        if q is None:
+            return math.nan
+        try:
+            force = _isothermal(search, q, layers).state.force
+        except (NoFilmError, SingularFilmError):
+            return math.nan
+        return math.atan2(-force[1], -force[0])
+
+    angles = np.linspace(-math.pi, math.pi, ATTITUDES + 1)
+    values = [misfit(float(angle)) for angle in angles]
+    for k in sorted(range(ATTITUDES), key=lambda k: abs(angles[k])):
+        low, high = values[k], values[k + 1]
+        if not (low * high <= 0.0 and abs(low - high) < math.pi):
+            continue
+        search.held = True
+        bracket = float(angles[k]), float(angles[k + 1])
+        angle = float(brentq(misfit, *bracket, xtol=1e-4))  # type: ignore[arg-type]
+        q = search.at(angle)
+        if q is None:
+            continue
+        held = _isothermal(search, q, layers)
+        search.held = False
+        found = _isothermal(search, held.state.displacement, layers)
+        if found.converged:
+            return found
+    search.held = False
+    return None
+
+
 def _thermal(search: PadSearch, q: Array, heat: Heat) -> ThermalFilm:
     """Temperatures and equilibrium together, again where other pads turn out to be unloaded."""
     iterations, revisions = 0, 0
@@ -119,13 +161,15 @@ def _thermal(search: PadSearch, q: Array, heat: Heat) -> ThermalFilm:
         )
         iterations, revisions = iterations + film.iterations, revisions + 1
         film = replace(film, iterations=iterations)
-        before, q, heat = search.unloaded, film.state.displacement, film.heat
-        sure = film.converged and not (search.changed(q) or search.needs_sampling(q))
-        if sure or film.out_of_range or revisions == MAX_REVISIONS:
+        q, heat = film.state.displacement, film.heat
+        layers = _warm_layers(search.whole, heat)
+        settled = search.revived(q, layers) if film.converged else None
+        if settled is None and film.converged and not search.changed(q):
             return film
-        q = search.settle(q, _warm_layers(search.whole, heat))
-        if search.unloaded == before and film.converged:
+        tired = revisions == (MAX_REVISIONS if film.converged else MAX_RETRIES)
+        if tired or film.out_of_range:
             return film
+        q = search.settle(q, layers) if settled is None else settled
 
 
 def _conclude(
@@ -149,7 +193,9 @@ def _conclude(
     elif unreachable:
         status = SolveStatus.NO_EQUILIBRIUM
         message = (
-            "no journal position off the pads carries the load: the film carries "
+            "at no attitude with this eccentricity does the film's force point along the load"
+            if isinstance(search.target, EccentricityTarget)
+            else "no journal position off the pads carries the load: the film carries "
             f"{float(np.hypot(*state.force[:2])):.4g} N at the last one tried; a heavier load "
             "needs more speed, viscosity or size"
         )
@@ -167,5 +213,5 @@ def _conclude(
         message=message,
         iterations=iterations,
         residual=residual,
-        unloaded=search.unloaded,
+        unloaded=search.unloaded | search.without_film(state),
     )

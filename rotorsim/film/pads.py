@@ -19,6 +19,7 @@ together, with the film's own stiffness for the Jacobian.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -36,10 +37,12 @@ from .problem import FilmProblem, FilmState, film_state
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+RETURNS = 3
+"""Times that a pad may become unloaded and loaded again before its E_n may no longer cross zero."""
 FILM_KEPT = 0.35
 """Part of each pad's thinnest film that a step must leave."""
 LARGEST_STEP = 0.3
-"""Of E_n, relative to the clearance."""
+"""Of E_n and E_t, relative to the clearance."""
 THINNEST = 1e-4
 """Film thickness relative to the clearance at which the search gives up."""
 LEAST_ECCENTRICITY = 1e-8
@@ -145,9 +148,13 @@ class PadSearch:
         """With the unloaded pads' films standing still."""
         self.target = target
         self.unreachable = False
+        self.held = False
+        """Whether the journal stays where it is and only the pads move."""
         self.unloaded: frozenset[int] = frozenset()
-        self._returned: frozenset[int] = frozenset()
-        """Pads that were unloaded before; from zero their load rises infinitely steep."""
+        self._returns: Counter[int] = Counter()
+        """How often each pad has been unloaded before; from zero its load rises infinitely steep.
+        """
+        self._revived: frozenset[int] = frozenset()
 
     @cached_property
     def frames(self) -> tuple[PadFrame, ...]:
@@ -170,14 +177,31 @@ class PadSearch:
         """
         q = np.zeros(len(self._weights))
         if isinstance(self.target, EccentricityTarget):
-            size = self.target.eccentricity_ratio * self.whole.bearing.radial_clearance
             for angle in math.pi / 36.0 * np.array(sorted(range(-36, 37), key=abs)):
-                if size < self.reach(float(angle)):
-                    q[0], q[1] = size * math.cos(angle), size * math.sin(angle)
-                    return self._with_room(q)
+                place = self.at(float(angle))
+                if place is not None:
+                    return place
             raise NoFilmError("the journal touches a pad wherever it stands at this eccentricity")
         q[0] = 0.5 * min(self.reach(0.0), self.whole.bearing.radial_clearance)
-        return self._with_room(q)
+        clearance, thinnest = self.whole.bearing.radial_clearance, self.whole.geometry.thinnest_at
+        while thinnest(self._with_room(q)) <= 0.05 * clearance and q[0] > 1e-3 * clearance:
+            q[0] *= 0.7
+        if thinnest(q) <= 0.0:
+            raise NoFilmError("the tilted journal touches a pad even when it is centred")
+        return q
+
+    def at(self, angle: float) -> Array | None:
+        """Displacements with the journal at the given eccentricity and an attitude `angle` [rad].
+
+        None where it would touch a pad.
+        """
+        assert isinstance(self.target, EccentricityTarget)
+        q = np.zeros(len(self._weights))
+        size = self.target.eccentricity_ratio * self.whole.bearing.radial_clearance
+        q[0], q[1] = size * math.cos(angle), size * math.sin(angle)
+        if size >= self.reach(angle):
+            return None
+        return q if self.whole.geometry.thinnest_at(self._with_room(q)) > 0.0 else None
 
     def reach(self, angle: float) -> float:
         """Distance from the centre at which the journal, moved along `angle`, touches a pad [m].
@@ -250,8 +274,16 @@ class PadSearch:
                 for place in frame.unknowns.places:
                     stiffness[place, :] = stiffness[:, place] = 0.0
                     stiffness[place, place] = 1.0
-        if isinstance(self.target, EccentricityTarget):
-            step, off = self._turn(q, missing, stiffness)
+        carried = float(np.hypot(state.force[0], state.force[1]))
+        if self.held:
+            missing[:2], stiffness[:2], stiffness[:, :2] = 0.0, 0.0, 0.0
+            stiffness[[0, 1], [0, 1]] = 1.0
+            off = float(np.linalg.norm(missing)) / max(carried, 1e-300)
+            step = _solve(stiffness, missing)
+        elif isinstance(self.target, EccentricityTarget):
+            off = float(np.linalg.norm(missing[1:])) / max(carried, 1e-300)
+            off = max(off, 1.0) if missing[0] >= 0.0 else off
+            step = self._turn(q, missing, stiffness, SLACK * min(off, 1.0) * carried)
         else:
             off = float(np.linalg.norm(missing)) / self.target.load
             # A journal on one pad alone has no stiffness across: let it slide, not leap.
@@ -266,27 +298,21 @@ class PadSearch:
         self.unreachable = bool(thin < 2.0 * THINNEST and off > 1e-3)
         return following, off
 
-    def _turn(self, q: Array, missing: Array, stiffness: Array) -> tuple[Array, float]:
+    def _turn(self, q: Array, missing: Array, stiffness: Array, slack: float) -> Array:
         """Newton's step that keeps the journal at its distance from the centre."""
         size = float(np.hypot(q[0], q[1]))
         across = np.array([-q[1], q[0]]) / size
-        load = max(float(-missing[0]), 1e-30)
-        off = float(np.linalg.norm(missing[1:])) / float(np.hypot(missing[0], missing[1]) + 1e-300)
-        if missing[0] >= 0.0:
-            off = max(off, 1.0)
         reduced = np.column_stack([stiffness[1:, :2] @ across, stiffness[1:, 2:]])
-        slack = SLACK * min(off, 1.0) * float(np.hypot(missing[0], missing[1]))
         reduced[0, 0] += slack / self.whole.bearing.radial_clearance * across[1]
-        if abs(missing[0]) < 1e-30 and not missing[1:].any():
-            return np.zeros_like(q), 1.0
         solved = _solve(reduced, missing[1:])
-        angle = max(-0.3, min(0.3, float(solved[0]) / size))
-        if not load > 0.0 or not math.isfinite(angle):
-            angle = 0.0
-        turned = math.atan2(q[1], q[0]) + angle
+        turned = math.atan2(q[1], q[0]) + max(-0.3, min(0.3, float(solved[0]) / size))
         step = np.concatenate([size * np.array([math.cos(turned), math.sin(turned)]), solved[1:]])
         step[:2] -= q[:2]
-        return step, off
+        return step
+
+    def without_film(self, state: FilmState) -> frozenset[int]:
+        """Numbers of the pads without pressure."""
+        return frozenset(k for k, f in enumerate(self.frames) if not self._carries(state, f))
 
     def _carries(self, state: FilmState, frame: PadFrame) -> bool:
         return bool(state.solution.pressure[frame.columns].max() > 0.0)
@@ -303,7 +329,7 @@ class PadSearch:
             if number in self.unloaded:
                 room = 0.5 * (frame.clearance - before)
                 after = max(after, before)
-            elif number in self._returned and before > 0.0 and after < before:
+            elif self._returns[number] >= RETURNS and before > 0.0 and after < before:
                 room = min(room, 0.75 * before)
             scale = min(scale, max(room, 0.0) / max(abs(after - before), 1e-300))
         film = geometry.thickness(old)
@@ -323,17 +349,22 @@ class PadSearch:
             scale *= 0.6
         else:
             return old
-        if isinstance(self.target, EccentricityTarget) and scale < 1.0:
+        if isinstance(self.target, EccentricityTarget) and scale < 1.0 and not self.held:
             size = self.target.eccentricity_ratio * clearance
             result[:2] *= size / float(np.hypot(result[0], result[1]))
         return result
 
     def _above_trivial(self, old: Array, new: Array, loaded: list[PadFrame]) -> Array:
-        """Keep E_t of every pad with E_n > 0 above zero, where its film carries."""
+        """Keep E_t near, and of every pad with E_n > 0 above zero, where its film carries."""
         new = new.copy()
         for frame in loaded:
             along, across = frame.eccentricity(new)
-            if along > 0.0 and across <= 0.0 and not self._fed:
+            turned = across - frame.eccentricity(old)[1]
+            if abs(turned) > LARGEST_STEP * frame.clearance:
+                excess = turned - math.copysign(LARGEST_STEP * frame.clearance, turned)
+                new[frame.unknowns.tilt] -= excess / frame.arm
+                across -= excess
+            if along > 0.0 and across <= 0.0 and not self._skewed:
                 kept = max(0.3 * frame.eccentricity(old)[1], 0.02 * along)
                 new[frame.unknowns.tilt] += (kept - across) / frame.arm
         return new
@@ -349,8 +380,10 @@ class PadSearch:
         brackets: dict[int, tuple[float, float]] = {}
         asked: list[int] = []
         for number, frame in enumerate(self.frames):
+            if frame.unknowns.pivot is not None:
+                q[frame.unknowns.pivot] = max(q[frame.unknowns.pivot], 0.0)
             limits = frame.tilt_limits(self.whole.geometry, q)
-            above = frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance
+            above = self._above(frame, q)
             if self._asks(frame, above):
                 asked.append(number)
             elif above:
@@ -360,21 +393,29 @@ class PadSearch:
         if asked:
             found, full = self._sampled(q, asked, layers)
             brackets.update(found)
-        roots = {
+        q = self._bracketed(q, self._roots(brackets, guess), layers, full)
+        self._keep_out(frozenset(range(len(self.frames))) - frozenset(brackets), q)
+        return q
+
+    def _roots(self, brackets: dict[int, tuple[float, float]], guess: Array) -> dict[int, _Root]:
+        return {
             number: _Root(*bracket, guess=float(guess[self.frames[number].unknowns.tilt]))
             for number, bracket in brackets.items()
         }
-        q = self._bracketed(q, roots, layers, full)
-        self._keep_out(frozenset(range(len(self.frames))) - frozenset(brackets), q)
-        return q
 
     @property
     def _fed(self) -> bool:
         """Whether grooves press on the pads' edges, so that no pad need be without pressure."""
         return any(groove.supply_pressure > 0.0 for groove in self.whole.bearing.grooves)
 
+    @property
+    def _skewed(self) -> bool:
+        """Whether E_n and E_t, at the mid-plane, do not tell where a pad's root lies."""
+        return self._fed or not self.whole.bearing.is_symmetric
+
     def _keep_out(self, unloaded: frozenset[int], q: Array) -> None:
-        self._returned |= self.unloaded - unloaded
+        for number in self.unloaded - unloaded:
+            self._returns[number] += 1
         self.unloaded = unloaded
         self.problem = self.whole
         if unloaded:
@@ -444,20 +485,38 @@ class PadSearch:
     def changed(self, q: Array) -> bool:
         """Whether other pads than the ones taken as unloaded are so at `q`, as far as E_n tells."""
         for number, frame in enumerate(self.frames):
-            above = frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance
+            above = self._above(frame, q)
             if above == (number in self.unloaded) and not self._asks(frame, above):
                 return True
         return False
 
-    def needs_sampling(self, q: Array) -> bool:
-        """Whether a pad may have a root at `q` that only looking for it shows."""
-        return any(
-            self._asks(frame, frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance)
-            for frame in self.frames
-        )
+    def revived(self, q: Array, layers: LayerIntegrals) -> Array | None:
+        """Look for roots of unloaded pads that only a search shows; None if there are none.
+
+        Each pad is revived once: a film that balances at some positions of the journal only could
+        come and go for ever.
+        """
+        asked = [
+            number
+            for number in sorted(self.unloaded - self._revived)
+            if self._asks(self.frames[number], self._above(self.frames[number], q))
+        ]
+        if not asked:
+            return None
+        q, guess = q.copy(), q
+        found, full = self._sampled(q, asked, layers)
+        if not found:
+            return None
+        self._revived |= frozenset(found)
+        q = self._bracketed(q, self._roots(found, guess), layers, full)
+        self._keep_out(self.unloaded - frozenset(found), q)
+        return q
+
+    def _above(self, frame: PadFrame, q: Array) -> bool:
+        return frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance
 
     def _asks(self, frame: PadFrame, above: bool) -> bool:
-        return self._fed or (not above and frame.pad.offset > 0.5)
+        return self._skewed or (not above and frame.pad.offset > 0.5)
 
     @property
     def supports_load(self) -> bool:
