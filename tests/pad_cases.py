@@ -63,7 +63,7 @@ def pad_case(
     mesh: tuple[int, int] = (80, 12),
     cavitation: str = "reynolds",
     supply_pressure: float = 0.0,
-    tilt: tuple[float, float] = (0.0, 0.0),
+    misalignment: tuple[float, float] = (0.0, 0.0),
     radius: float = RADIUS,
     length: float = LENGTH,
     clearance: float = CLEARANCE,
@@ -76,7 +76,9 @@ def pad_case(
         Groove(middle, extent, supply_pressure=supply_pressure) for middle, extent in gaps(pads)
     )
     return Case(
-        bearing=Bearing(radius, length, clearance, pads=pads, grooves=grooves, tilt=tilt),
+        bearing=Bearing(
+            radius, length, clearance, pads=pads, grooves=grooves, misalignment=misalignment
+        ),
         lubricant=Lubricant(ExponentialViscosity(viscosity, 313.15, thinning), 860.0, 2000.0, 0.13),
         film=FilmSettings(cavitation=Cavitation(cavitation), mesh=MeshSize(*mesh, 8, 4)),
         thermal=thermal or ThermalSettings(model=ThermalModel.ISOTHERMAL),

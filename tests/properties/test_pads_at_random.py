@@ -93,7 +93,7 @@ def random_case(seed: int, *, thermal: bool) -> tuple[Case, float]:
     cavitation = draw.choice(["reynolds"] * 6 + ["jfo", "half_sommerfeld"])
     grooves = tuple(Groove(m, e, supply_pressure=pressure) for m, e in gaps(pads))
     case = Case(
-        Bearing(radius, length, clearance, pads=pads, grooves=grooves, tilt=tilt),
+        Bearing(radius, length, clearance, pads=pads, grooves=grooves, misalignment=tilt),
         Lubricant(
             ExponentialViscosity(viscosity, 323.0, 0.03 if thermal else 0.0), 860.0, 2000.0, 0.13
         ),

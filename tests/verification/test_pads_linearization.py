@@ -82,7 +82,7 @@ BEARINGS = {
     "rigid, fed": pad_case(equal_pads(offset=0.6), LOAD, supply_pressure=6e4),
     "springs": pad_case(equal_pads(pivot=SpringPivot(2e8)), LOAD),
     "balls, misaligned": pad_case(
-        equal_pads(pivot=SpherePivot(radius=0.05)), LOAD, tilt=(3e-4, -5e-4)
+        equal_pads(pivot=SpherePivot(radius=0.05)), LOAD, misalignment=(3e-4, -5e-4)
     ),
     "four on pad, off centre": pad_case(
         equal_pads(4, first_deg=7.0, arc_deg=72.0, offset=0.55, preload=0.2), LOAD
