@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import io
 import os
+import sys
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -73,6 +75,7 @@ def read(path: str | Path) -> xr.Dataset:
         reader = "; CoefficientTable.from_csv reads one" if kind is FileKind.CSV else ""
         raise TableError(f"{sentence(kind)}{reader}; here a netCDF table is needed", source=source)
     dataset = _loaded(_unsealed(data, source), source)
+    _check_texts(dataset, source)
     _check_provenance(dataset, source)
     for variable in dataset.variables.values():
         variable.encoding = {}
@@ -95,29 +98,59 @@ def _unsealed(data: bytes, source: Path) -> bytes:
 
 
 def _loaded(data: bytes, source: Path) -> xr.Dataset:
+    failure, hook = "", sys.unraisablehook
+    # h5netcdf's destructors complain aloud about files that could not be opened.
+    sys.unraisablehook = lambda _: None
+    try:
+        return _opened(data)
+    except _TooLarge as error:
+        raise TableError(str(error), source=source) from None
+    except Exception as error:  # the libraries raise a dozen kinds on damaged files
+        failure = str(error) or type(error).__name__
+    finally:
+        if failure:
+            gc.collect()
+        sys.unraisablehook = hook
+    raise TableError(
+        f"not a readable netCDF file, it may be truncated or damaged ({failure[:200]}); "
+        "make it again with `rotorsim table`",
+        source=source,
+    )
+
+
+class _TooLarge(Exception):
+    """Arrays that no table has."""
+
+
+def _opened(data: bytes) -> xr.Dataset:
+    """Dataset of a file's contents, loaded if it is not too large."""
     import xarray as xr
 
-    try:
-        with (
-            warnings.catch_warnings(),
-            # A file of tables has no dates; units that look like such are somebody else's.
-            xr.open_dataset(io.BytesIO(data), engine="h5netcdf", decode_times=False) as opened,
-        ):
-            warnings.simplefilter("ignore")
-            if opened.nbytes > _MAX_LOADED:
-                raise TableError(
-                    f"claims arrays of {opened.nbytes / 1e6:.0f} MB: no coefficient table",
-                    source=source,
-                )
-            return opened.load()
-    except TableError:
-        raise
-    except Exception as error:  # the libraries raise a dozen kinds on damaged files
-        raise TableError(
-            f"not a readable netCDF file, it may be truncated or damaged ({error}); "
-            "make it again with `rotorsim table`",
-            source=source,
-        ) from error
+    with (
+        warnings.catch_warnings(),
+        # A file of tables has no dates; units that look like such are somebody else's.
+        xr.open_dataset(io.BytesIO(data), engine="h5netcdf", decode_times=False) as opened,
+    ):
+        warnings.simplefilter("ignore")
+        if opened.nbytes > _MAX_LOADED:
+            raise _TooLarge(f"claims arrays of {opened.nbytes / 1e6:.0f} MB: no coefficient table")
+        return opened.load()
+
+
+def _check_texts(dataset: xr.Dataset, source: Path) -> None:
+    """Refuse text that is no UTF-8; the readers let it pass."""
+    texts = [*dataset.attrs.items()]
+    texts += [(n, t) for n, v in dataset.variables.items() for t in v.attrs.values()]
+    texts += [(n, t) for n, v in dataset.variables.items() if v.dtype == object
+              for t in v.values.flat]  # fmt: skip
+    for name, text in texts:
+        try:
+            str(text).encode()
+        except UnicodeEncodeError:
+            raise TableError(
+                "holds text that is no UTF-8: the file is damaged", source=source,
+                key=str(name).encode(errors="replace").decode(),
+            ) from None  # fmt: skip
 
 
 def _check_provenance(dataset: xr.Dataset, source: Path) -> None:

@@ -269,6 +269,91 @@ def test_foreign_files_are_refused(table, tmp_path):
             CoefficientTable.load(path)
 
 
+def test_no_flipped_bit_changes_a_table(table, tmp_path):
+    """Refused, or in the checksum's own name and then without effect."""
+    path = table.save(tmp_path / "t.nc")
+    data, dice = path.read_bytes(), np.random.default_rng(3)
+    harmless = 0
+    for place in [*dice.integers(len(data), size=60), *range(len(data) - 90, len(data))]:
+        changed = bytearray(data)
+        changed[place] ^= 1 << int(dice.integers(8))
+        path.write_bytes(changed)
+        try:
+            found = CoefficientTable.load(path)
+        except TableError:
+            continue
+        harmless += 1
+        for name in table.dataset.variables:
+            assert np.array_equal(found.dataset[name].values, table.dataset[name].values,
+                                  equal_nan=table.dataset[name].dtype.kind == "f")  # fmt: skip
+    assert harmless <= 20
+
+
+@pytest.mark.parametrize("name", ["speed", "radial_clearance", "kxx", "load"])
+def test_a_flipped_bit_shows_without_the_checksum_of_the_file_too(table, tmp_path, name):
+    """As another program would write it anew: every block of numbers has a checksum of HDF5."""
+    path = table.save(tmp_path / "t.nc")
+    data = path.read_bytes()
+    block = np.ascontiguousarray(table.dataset[name].values).tobytes()
+    place = data.index(block) + len(block) - 2
+    changed = bytearray(data[: data.rindex(b"\nrotorsim sha256 ")])
+    changed[place] ^= 2
+    path.write_bytes(changed)
+    with pytest.raises(TableError, match=r"t\.nc: not a readable netCDF file"):
+        CoefficientTable.load(path)
+
+
+@pytest.mark.parametrize(
+    ("attributes", "message"),
+    [
+        ({"rotorsim_table_version": "new"}, "rotorsim_table_version: must be a whole number"),
+        ({"rotorsim_table_version": np.arange(3)}, "rotorsim_table_version: must be a whole"),
+        ({"scenario": 5}, "must be text"),
+        ({"scenario": "x", "scenario_sha256": 7.5}, "must be text"),
+        ({"constant": 1}, "constant coefficients differ between speeds"),
+    ],
+)
+def test_attributes_of_a_wrong_type_are_refused(table, tmp_path, attributes, message):
+    path = tmp_path / "t.nc"
+    saved = CoefficientTable.load(table.save(path)).dataset
+    saved.assign_attrs(attributes).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(TableError, match=message):
+        CoefficientTable.load(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "message"),
+    [
+        ("kxx", lambda v: v.astype(complex), "kxx: must be real numbers"),
+        ("speed", lambda v: v - v[0], "speed: speeds must be 1e-06 to"),
+        ("radial_clearance", lambda v: -v, "radial_clearance: must be between 0 and 1 m"),
+        ("cyy", lambda v: v * 1e30, "cyy: is beyond every sensible coefficient"),
+    ],
+)
+def test_numbers_that_no_bearing_has_are_refused(table, name, change, message):
+    values = change(table.dataset[name].values)
+    dataset = (
+        table.dataset.assign_coords({name: values})
+        if name in table.dataset.coords
+        else table.dataset.assign({name: (table.dataset[name].dims, values)})
+    )
+    with pytest.raises(TableError, match=message):
+        CoefficientTable(dataset)
+
+
+def test_a_small_file_that_claims_huge_arrays_is_not_loaded(tmp_path):
+    """HDF5 fills what was never written."""
+    import h5py
+
+    path = tmp_path / "huge.nc"
+    with h5py.File(path, "w") as file:
+        file.create_dataset("kxx", (100_000, 100_000), "f8", chunks=(1000, 1000))
+        file.attrs["rotorsim_table_version"] = 1
+    assert path.stat().st_size < 10_000
+    with pytest.raises(TableError, match=r"claims arrays of 80000 MB|not a readable netCDF"):
+        CoefficientTable.load(path)
+
+
 def test_a_failed_write_leaves_the_old_file(table, tmp_path, monkeypatch):
     path = table.save(tmp_path / "t.nc")
     before = path.read_bytes()
