@@ -4,9 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 from ..arguments import above_zero, not_negative
 from ..errors import InputError
+from .entries import Length, Number, Quantity
+
+Modulus = Annotated[float, Quantity("modulus", "207 GPa")]
+Density = Annotated[float, Quantity("density", "7830 kg/m^3", "not_negative")]
+Poisson = Annotated[float, Number(above=-1.0, most=0.5)]
+Place = Annotated[float, Quantity("length", "140 mm", "not_negative")]
+Diameter = Annotated[float, Quantity("length", "100 mm")]
+Bore = Annotated[float, Quantity("length", "40 mm", "not_negative")]
+DiscMass = Annotated[float, Quantity("mass", "35 kg")]
+Inertia = Annotated[float, Quantity("moment of inertia", "0.55 kg*m^2", "not_negative")]
 
 
 @dataclass(frozen=True)
@@ -25,10 +36,10 @@ class Material:
         [Pa]; None: from Young's modulus and Poisson's ratio.
     """
 
-    youngs_modulus: float = 207e9
-    density: float = 7830.0
-    poisson_ratio: float = 0.3
-    shear_modulus: float | None = None
+    youngs_modulus: Modulus = 207e9
+    density: Density = 7830.0
+    poisson_ratio: Poisson = 0.3
+    shear_modulus: Modulus | None = None
 
     def __post_init__(self) -> None:
         above_zero("rotor", youngs_modulus=self.youngs_modulus)
@@ -83,15 +94,15 @@ class Section:
         With False the section has mass only (a sleeve that is not shrunk on).
     """
 
-    length: float
-    outer_diameter: float
-    inner_diameter: float = 0.0
-    outer_diameter_right: float | None = None
-    inner_diameter_right: float | None = None
+    length: Length
+    outer_diameter: Diameter
+    inner_diameter: Bore = 0.0
+    outer_diameter_right: Diameter | None = None
+    inner_diameter_right: Bore | None = None
     material: Material | None = None
-    elements: int | None = None
-    at: float | None = None
-    layer: int = 1
+    elements: Annotated[int, Number(least=1, most=1000)] | None = None
+    at: Place | None = None
+    layer: Annotated[int, Number(least=1, most=9)] = 1
     stiffness: bool = True
 
     def __post_init__(self) -> None:

@@ -33,10 +33,11 @@ _ROTORS = Made({"rigid": Rotor.rigid, "jeffcott": Rotor.jeffcott})
 """What ``[rotor]`` makes, by its ``kind``."""
 
 
-class _TitleEntry(Leaf):
+class TitleEntry(Leaf):
     """One line of text."""
 
     def read(self, value: object) -> str:
+        """Return the text."""
         if not isinstance(value, str):
             raise InputError("must be text in quotes")
         if len(value) > MAX_TITLE:
@@ -79,7 +80,7 @@ class Scenario:
     bearing: Bearing
     lubricant: Annotated[Lubricant, Made(oil)]
     operating: Operating
-    title: Annotated[str, _TitleEntry()] = ""
+    title: Annotated[str, TitleEntry()] = ""
     film: FilmSettings = field(default_factory=FilmSettings)
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
     rotor: Annotated[Rotor | None, _ROTORS] = None

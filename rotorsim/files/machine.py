@@ -1,0 +1,334 @@
+"""Machine files: a rotor from its drawing on several supports (TOML with units).
+
+Each bearing keeps its own scenario file, which the machine's file names; its load and speed come
+from the machine.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any
+
+from ..arguments import above_zero
+from ..bearing.table import CoefficientTable
+from ..errors import InputError, ScenarioError
+from ..model.entries import NOT_IN_FILES, Example, Made, Quantity, one_of
+from ..model.machine import (
+    Clearance,
+    LateralSettings,
+    MachineOperating,
+    Probe,
+    SealEntry,
+    StaticForce,
+    SupportEntry,
+    UnbalanceEntry,
+    distinct_names,
+)
+from ..model.shaft import (
+    STEEL,
+    Bore,
+    Density,
+    Diameter,
+    Disc,
+    DiscMass,
+    Inertia,
+    Material,
+    Modulus,
+    Place,
+    Poisson,
+    Section,
+)
+from ..rotor import Beam, Rotor, beam_rotor, with_unbalance
+from ..text import printable
+from .formats import is_table, read_table
+from .scenario import Scenario, load_scenario
+from .scenario.document import parse_toml, read_text
+from .scenario.reader import Reader
+from .scenario.scenario import TitleEntry
+
+_ROTATIONS = ("clockwise", "counterclockwise")
+
+
+@dataclass(frozen=True)
+class RotorDrawing:
+    """A shaft from its drawing, with the unbalances that it is given.
+
+    Attributes
+    ----------
+    beam : Beam
+    unbalance : tuple of UnbalanceEntry
+    """
+
+    beam: Beam
+    unbalance: tuple[UnbalanceEntry, ...] = ()
+
+
+def _disc(
+    at: Annotated[Place, Example("620 mm")],
+    name: str = "",
+    mass: DiscMass | None = None,
+    polar_inertia: Inertia | None = None,
+    transverse_inertia: Inertia | None = None,
+    outer_diameter: Diameter | None = None,
+    inner_diameter: Bore = 0.0,
+    width: Diameter | None = None,
+    density: Density = STEEL.density,
+) -> Disc:
+    """Make a disc from its mass and inertias, or from its dimensions; mass alone is added mass."""
+    if (mass is None) == (outer_diameter is None):
+        raise InputError(
+            "needs mass (with polar_inertia and transverse_inertia), or outer_diameter and width",
+            key="mass",
+        )
+    if mass is None:
+        if width is None or outer_diameter is None:
+            raise InputError("is missing: a disc from its dimensions needs it", key="width")
+        return Disc.from_dimensions(at, outer_diameter, width, density, inner_diameter, name)
+    if (polar_inertia is None) != (transverse_inertia is None):
+        raise InputError("goes with polar_inertia: give both, or none", key="transverse_inertia")
+    return Disc(at, mass, polar_inertia or 0.0, transverse_inertia or 0.0, name)
+
+
+def _beam(
+    section: Annotated[
+        tuple[Section, ...], Example([{"length": "180 mm", "outer_diameter": "100 mm"}])
+    ],
+    disc: tuple[Annotated[Disc, Made(_disc)], ...] = (),
+    unbalance: tuple[UnbalanceEntry, ...] = (),
+    youngs_modulus: Modulus = STEEL.youngs_modulus,
+    density: Density = STEEL.density,
+    poisson_ratio: Poisson = STEEL.poisson_ratio,
+    shear_modulus: Modulus | None = None,
+    internal_damping: Annotated[float, Quantity("time", "1e-5 s", "not_negative")] = 0.0,
+    rotation: str = _ROTATIONS[0],
+    shear: bool = True,
+    axial_force: Annotated[float, Quantity("force", "0 N", "any")] = 0.0,
+) -> RotorDrawing:
+    """Make a shaft from its sections and discs."""
+    try:
+        one_of(_ROTATIONS, rotation)
+    except InputError as error:
+        raise InputError(error.message, key="rotation", value=rotation) from None
+    beam = Beam(
+        section, disc, Material(youngs_modulus, density, poisson_ratio, shear_modulus), shear,
+        axial_force, internal_damping, rotation == _ROTATIONS[0],
+    )  # fmt: skip
+    for entry in unbalance:
+        beam.check_place(entry.at, "rotor.unbalance.at")
+    return RotorDrawing(beam, unbalance)
+
+
+@dataclass(frozen=True, eq=False)
+class MachineFile:
+    """A machine as its file describes it (SI).
+
+    Attributes
+    ----------
+    rotor : RotorDrawing
+    operating : MachineOperating
+    title : str
+    support : tuple of SupportEntry
+    seal : tuple of SealEntry
+    probe : tuple of Probe
+    load : tuple of StaticForce
+    clearance : tuple of Clearance
+    lateral : LateralSettings
+    source : Path or None
+        The file.
+    text : str
+        Its TOML text.
+
+    Raises
+    ------
+    InputError
+        A place is off the shaft, or two supports stand at one place or have one name.
+    """
+
+    rotor: Annotated[RotorDrawing, Made({"beam": _beam})]
+    operating: MachineOperating
+    title: Annotated[str, TitleEntry()] = ""
+    support: tuple[SupportEntry, ...] = ()
+    seal: tuple[SealEntry, ...] = ()
+    probe: tuple[Probe, ...] = ()
+    load: tuple[StaticForce, ...] = ()
+    clearance: tuple[Clearance, ...] = ()
+    lateral: LateralSettings = field(default_factory=LateralSettings)
+    source: Annotated[Path | None, NOT_IN_FILES] = None
+    text: Annotated[str, NOT_IN_FILES] = field(default="", repr=False)
+
+    def __post_init__(self) -> None:
+        beam = self.rotor.beam
+        for word in ("support", "seal", "probe", "load", "clearance"):
+            for i, entry in enumerate(getattr(self, word)):
+                beam.check_place(entry.at, f"{word}[{i}].at")
+        for i, entry in enumerate(self.lateral.destabilising_stiffness):
+            beam.check_place(entry.at, f"lateral.destabilising_stiffness[{i}].at")
+        distinct_names(self.support, "support")
+        distinct_names(self.seal, "seal")
+        places = [entry.at for entry in self.support]
+        for i, at in enumerate(places):
+            if any(abs(at - other) < 1e-6 * beam.length for other in places[:i]):
+                raise InputError("another support stands at this place", key=f"support[{i}].at")
+
+    @classmethod
+    def from_text(cls, text: str, source: str | Path | None = None) -> MachineFile:
+        """Read a machine from TOML text.
+
+        Parameters
+        ----------
+        text : str
+        source : str or Path, optional
+            Where the text came from; the files that it names are found beside it.
+
+        Raises
+        ------
+        ScenarioError
+            With file, key, value and what is allowed.
+        """
+        path = None if source is None else Path(source)
+        name = "machine text" if path is None else str(path)
+        reader = Reader(parse_toml(text, name), cls, name)
+        arguments = reader.arguments()
+        try:
+            title = arguments.pop("title", "") or (
+                "untitled" if path is None else printable(path.stem)
+            )
+            machine = cls(**arguments, title=title, source=path, text=text)
+            machine.check_files()
+            return machine
+        except InputError as error:
+            if isinstance(error, ScenarioError):
+                raise
+            raise reader.error(error) from None
+
+    @property
+    def support_names(self) -> tuple[str, ...]:
+        """Names of the supports, those without one numbered."""
+        return distinct_names(self.support, "support")
+
+    @property
+    def seal_names(self) -> tuple[str, ...]:
+        """Names of the seals, those without one numbered."""
+        return distinct_names(self.seal, "seal")
+
+    def check_files(self) -> None:
+        """Read the files of bearings and coefficients, whose errors name themselves."""
+        _ = self.bearings, self.tables
+
+    @cached_property
+    def bearings(self) -> dict[str, Scenario]:
+        """Bearing scenarios by the support's name.
+
+        Raises
+        ------
+        InputError
+            A file is missing or wrong, or leaves the choice between several clearances.
+        """
+        found = {}
+        for i, (name, entry) in enumerate(zip(self.support_names, self.support, strict=True)):
+            if entry.bearing is None:
+                continue
+            path = self._beside(entry.bearing, f"support[{i}].bearing")
+            scenario = load_scenario(path)
+            if len(scenario.radial_clearances) > 1:
+                raise InputError(
+                    f"{path} lists {len(scenario.radial_clearances)} clearances; a machine's "
+                    "bearing has one", key=f"support[{i}].bearing", value=entry.bearing,
+                )  # fmt: skip
+            found[name] = scenario
+        return found
+
+    @cached_property
+    def tables(self) -> dict[str, CoefficientTable]:
+        """Coefficient tables by the name of the support or seal.
+
+        Raises
+        ------
+        InputError
+            A file is missing or wrong, or holds more than one curve over speed.
+        """
+        found = {}
+        for word, names in (("support", self.support_names), ("seal", self.seal_names)):
+            for i, (name, entry) in enumerate(zip(names, getattr(self, word), strict=True)):
+                if entry.coefficients is None:
+                    continue
+                key = f"{word}[{i}].coefficients"
+                path = self._beside(entry.coefficients, key)
+                if not is_table(path):
+                    raise InputError(
+                        "must be a coefficient table: netCDF, CSV, or a bearing saved by ROSS",
+                        key=key, value=entry.coefficients,
+                    )  # fmt: skip
+                found[name] = read_table(path)
+                found[name].interpolator()
+        return found
+
+    def _beside(self, name: str, key: str) -> Path:
+        folder = Path() if self.source is None else self.source.parent
+        path = folder / name
+        if not path.is_file():
+            raise InputError(f"no such file beside the machine's: {path}", key=key, value=name)
+        return path
+
+    def rotor_with_unbalance(self, refinement: int = 1) -> Rotor:
+        """Assemble the rotor, with a node at every place that the file names.
+
+        Parameters
+        ----------
+        refinement : int
+            See `Beam.mesh`.
+        """
+        groups = (self.support, self.seal, self.probe, self.load, self.clearance)
+        places = [entry.at for group in groups for entry in group]
+        places += [entry.at for entry in self.rotor.unbalance]
+        places += [entry.at for entry in self.lateral.destabilising_stiffness]
+        rotor = beam_rotor(self.rotor.beam, places, refinement)
+        top = max(self.operating.speeds)
+        above_zero("operating", speed=top)
+        graded = [entry for entry in self.rotor.unbalance if entry.grade is not None]
+        planes = [
+            (
+                entry.at,
+                entry.amount
+                if entry.amount is not None
+                else entry.velocity / top * rotor.total_mass / len(graded),
+                entry.phase,
+            )
+            for entry in self.rotor.unbalance
+        ]
+        return with_unbalance(rotor, planes)
+
+
+def load_machine(path: str | Path) -> MachineFile:
+    """Read and validate a machine file.
+
+    Parameters
+    ----------
+    path : str or Path
+
+    Raises
+    ------
+    ScenarioError
+        The file, or one that it names, cannot be read, or an entry is wrong: file, key, value and
+        what is allowed.
+    """
+    return MachineFile.from_text(read_text(path), source=path)
+
+
+def is_machine(path: str | Path) -> bool:
+    """Whether a file describes a machine: it has supports, or a rotor of sections.
+
+    A file that cannot be read is none; whoever reads it as something else says why.
+    """
+    import tomllib
+
+    if Path(path).suffix.lower() != ".toml":
+        return False
+    try:
+        tables: dict[str, Any] = tomllib.loads(read_text(path))
+    except (InputError, ValueError):
+        return False
+    rotor = tables.get("rotor")
+    return "support" in tables or (isinstance(rotor, dict) and "section" in rotor)

@@ -1,0 +1,364 @@
+"""A machine as its file describes it: what carries the rotor, what loads it, what is asked of it.
+
+Positions are measured from the left end of the shaft [m]. The machine's frame: x points down
+(gravity), y is 90 degrees ahead of x in the direction of rotation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from ..errors import InputError
+from ..units import parse_quantity
+from .entries import Angle, Displacement, Example, Leaf, Length, Number, Quantity, Speed
+from .operating import SpeedRange, ascending
+from .shaft import Place
+
+Matrix = tuple[tuple[float, float], tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class MatrixEntry(Leaf):
+    """A 2 x 2 matrix: one value for x and y, a pair, or two rows of two.
+
+    Parameters
+    ----------
+    quantity : str
+        Of its entries, a name in `rotorsim.units.QUANTITIES`.
+    text : str
+        A valid one.
+    """
+
+    quantity: str
+    text: str
+
+    def read(self, value: object) -> Matrix:
+        """Return the matrix [SI]."""
+        if isinstance(value, str):
+            one = self._number(value)
+            return (one, 0.0), (0.0, one)
+        if isinstance(value, list) and len(value) == 2:
+            if all(isinstance(part, str) for part in value):
+                return (self._number(value[0]), 0.0), (0.0, self._number(value[1]))
+            if all(isinstance(part, list) and len(part) == 2 for part in value):
+                (xx, xy), (yx, yy) = ([self._number(one) for one in row] for row in value)
+                return (xx, xy), (yx, yy)
+        text = self.text
+        raise InputError(
+            f'must be one value "{text}", a pair ["{text}", "{text}"] for x and y, or two rows '
+            f'[["{text}", "{text}"], ["{text}", "{text}"]]'
+        )
+
+    def _number(self, text: object) -> float:
+        return parse_quantity(text, self.quantity, example=self.text)
+
+
+StiffnessMatrix = Annotated[Matrix, MatrixEntry("stiffness", "10 MN/m")]
+DampingMatrix = Annotated[Matrix, MatrixEntry("damping", "20 kN*s/m")]
+MassMatrix = Annotated[Matrix, MatrixEntry("mass", "5 kg")]
+
+
+@dataclass(frozen=True)
+class Pedestal:
+    """What a bearing's housing stands on.
+
+    Parameters
+    ----------
+    mass, stiffness, damping : (2, 2) tuples
+        Of the housing, and between it and the ground [kg, N/m, N s/m].
+    """
+
+    mass: MassMatrix
+    stiffness: StiffnessMatrix
+    damping: DampingMatrix = ((0.0, 0.0), (0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class SupportEntry:
+    """A bearing at a place of the shaft.
+
+    Parameters
+    ----------
+    at : float
+        [m]
+    name : str
+    bearing : str or None
+        File of a bearing's scenario, relative to the machine's file.
+    coefficients : str or None
+        File of a coefficient table, in the frame of its static load.
+    stiffness, damping, mass : (2, 2) tuples or None
+        Constants, in the machine's frame turned by `angle`.
+    elevation : float
+        Of the housing, upwards [m].
+    angle : float
+        By which the bearing is turned in its housing [rad].
+    pedestal : Pedestal or None
+    """
+
+    at: Annotated[Place, Example("140 mm")]
+    name: str = ""
+    bearing: str | None = None
+    coefficients: str | None = None
+    stiffness: StiffnessMatrix | None = None
+    damping: DampingMatrix | None = None
+    mass: MassMatrix | None = None
+    elevation: Displacement = 0.0
+    angle: Angle = 0.0
+    pedestal: Pedestal | None = None
+
+    def __post_init__(self) -> None:
+        given = [
+            key
+            for key in ("bearing", "coefficients", "stiffness")
+            if getattr(self, key) is not None
+        ]
+        if len(given) != 1:
+            raise InputError(
+                'needs one of bearing = "file.toml", coefficients = "file.csv" or '
+                f"stiffness = ...{' (it has ' + ' and '.join(given) + ')' if given else ''}",
+                key="bearing" if not given else given[1],
+            )
+        _constants_alone(self, given[0])
+
+
+def _constants_alone(entry: Any, given: str) -> None:
+    for key in ("damping", "mass"):
+        if given != "stiffness" and getattr(entry, key) is not None:
+            raise InputError(f"goes with stiffness, not with {given}", key=key)
+
+
+@dataclass(frozen=True)
+class SealEntry:
+    """A seal or an impeller: acts on the motion, and carries no static load.
+
+    Parameters
+    ----------
+    at, name, coefficients, stiffness, damping, mass
+        As for `SupportEntry`; a table is taken in the machine's frame.
+    """
+
+    at: Annotated[Place, Example("700 mm")]
+    name: str = ""
+    coefficients: str | None = None
+    stiffness: StiffnessMatrix | None = None
+    damping: DampingMatrix | None = None
+    mass: MassMatrix | None = None
+
+    def __post_init__(self) -> None:
+        given = [key for key in ("coefficients", "stiffness") if getattr(self, key) is not None]
+        if len(given) == 2 or not (given or self.damping is not None or self.mass is not None):
+            raise InputError(
+                'needs one of coefficients = "file.csv" or stiffness = ...', key="coefficients"
+            )
+        if given:
+            _constants_alone(self, given[0])
+
+
+@dataclass(frozen=True)
+class UnbalanceEntry:
+    """An unbalance at a place of the shaft.
+
+    Parameters
+    ----------
+    at : float
+        [m]
+    amount : float or None
+        Mass times radius [kg m].
+    grade : str or None
+        In place of `amount`: balance quality grade of the whole rotor at the highest speed, for
+        example ``G2.5`` (ISO 21940-11), shared equally by the planes that name it.
+    phase : float
+        Ahead of x at t = 0 [rad].
+    """
+
+    at: Annotated[Place, Example("620 mm")]
+    amount: Annotated[float, Quantity("unbalance", "200 g*mm", "not_negative")] | None = None
+    grade: str | None = None
+    phase: Angle = 0.0
+
+    def __post_init__(self) -> None:
+        if (self.amount is None) == (self.grade is None):
+            raise InputError('needs amount = "200 g*mm" or grade = "G2.5"', key="amount")
+        if self.grade is not None:
+            _ = self.velocity
+
+    @property
+    def velocity(self) -> float:
+        """Eccentricity times speed that the grade allows [m/s]."""
+        text = (self.grade or "").strip().upper().removeprefix("G").strip()
+        try:
+            value = float(text)
+        except ValueError:
+            value = -1.0
+        if not 0.0 < value < 1e5:
+            raise InputError(
+                'must be a balance quality grade, for example "G2.5"', key="grade",
+                value=self.grade,
+            )  # fmt: skip
+        return value * 1e-3
+
+
+@dataclass(frozen=True)
+class Probe:
+    """A displacement probe.
+
+    Parameters
+    ----------
+    at : float
+        [m]
+    name : str
+    angle : float
+        From x (down) in the direction of rotation [rad].
+    """
+
+    at: Annotated[Place, Example("90 mm")]
+    name: str = ""
+    angle: Angle = 0.0
+
+
+class ForceEntry(Leaf):
+    """A static force: ``[fx, fy]``, or a list of ``[speed, fx, fy]``."""
+
+    def read(self, value: object) -> tuple[tuple[float, float, float], ...]:
+        """Return rows of speed [rad/s], fx, fy [N]; one row at speed 0 holds at all speeds."""
+        if isinstance(value, list) and value:
+            if len(value) == 2 and all(isinstance(part, str) for part in value):
+                x, y = (parse_quantity(part, "force", example="2 kN") for part in value)
+                return ((0.0, x, y),)
+            if all(isinstance(row, list) and len(row) == 3 for row in value):
+                rows = tuple(
+                    (
+                        parse_quantity(speed, "speed", example="3000 rpm"),
+                        parse_quantity(x, "force", example="2 kN"),
+                        parse_quantity(y, "force", example="-1 kN"),
+                    )
+                    for speed, x, y in value
+                )
+                ascending(tuple(row[0] for row in rows), "force")
+                return rows
+        raise InputError(
+            'must be a pair ["2 kN", "-1 kN"] along x and y, or a list of '
+            '["3000 rpm", "2 kN", "-1 kN"]'
+        )
+
+
+@dataclass(frozen=True)
+class StaticForce:
+    """A static force on the shaft, of a gear mesh for example.
+
+    Parameters
+    ----------
+    at : float
+        [m]
+    force : tuple of (speed, fx, fy)
+        [rad/s, N, N]; linear between the speeds, constant beyond them.
+    name : str
+    """
+
+    at: Annotated[Place, Example("400 mm")]
+    force: Annotated[
+        tuple[tuple[float, float, float], ...], ForceEntry(), Example(["2 kN", "-1 kN"])
+    ]
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """A close clearance that the response is checked against.
+
+    Parameters
+    ----------
+    at : float
+        [m]
+    diametral : float
+        [m]
+    name : str
+    """
+
+    at: Annotated[Place, Example("650 mm")]
+    diametral: Annotated[Length, Example("0.5 mm")]
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class MachineOperating:
+    """Speeds of a machine.
+
+    Parameters
+    ----------
+    speed : tuple of float or SpeedRange
+        Ascending [rad/s]; a range becomes its values.
+    continuous : (float, float) or None
+        The range of speeds that margins are judged for [rad/s].
+    trip : float or None
+        [rad/s]
+    vertical : bool
+        A vertical shaft has no static load from its weight.
+    """
+
+    speed: tuple[Speed, ...] | SpeedRange
+    continuous: tuple[Speed, Speed] | None = None
+    trip: Speed | None = None
+    vertical: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "speed", ascending(self.speed, "operating.speed"))
+        if self.continuous is not None and not self.continuous[0] <= self.continuous[1]:
+            raise InputError("the second speed must be the higher one", key="operating.continuous")
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """Ascending [rad/s]."""
+        return ascending(self.speed, "operating.speed")
+
+
+@dataclass(frozen=True)
+class Destabilising:
+    """A destabilising cross stiffness k_xy = -k_yx = Q that is anticipated at a place.
+
+    Parameters
+    ----------
+    at : float
+        [m]
+    anticipated : float
+        [N/m]
+    """
+
+    at: Annotated[Place, Example("700 mm")]
+    anticipated: Annotated[float, Quantity("stiffness", "5 MN/m")]
+
+
+@dataclass(frozen=True)
+class LateralSettings:
+    """What a lateral analysis in the style of API 617 and 684 needs beyond the machine.
+
+    Every number of it is an input; the edition is printed with the results.
+
+    Parameters
+    ----------
+    edition : str
+    unbalance_factor : float
+        Times the residual unbalance; editions differ.
+    destabilising_stiffness : tuple of Destabilising
+    """
+
+    edition: str = "not stated"
+    unbalance_factor: Annotated[float, Number(above=0.0, most=100.0)] = 4.0
+    destabilising_stiffness: tuple[Destabilising, ...] = ()
+
+
+def distinct_names(entries: Sequence[Any], word: str) -> tuple[str, ...]:
+    """Names of entries, those without one numbered: ``support 2``.
+
+    Raises
+    ------
+    InputError
+        Two have the same name.
+    """
+    names = tuple(entry.name or f"{word} {i}" for i, entry in enumerate(entries, start=1))
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            raise InputError("another one has the same name", key=f"{word}[{i}].name", value=name)
+    return names
