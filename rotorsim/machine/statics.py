@@ -56,7 +56,7 @@ class StaticEquilibrium:
 
 def weight(rotor: Rotor) -> Array:
     """Forces (size,) [N] of gravity along x."""
-    return rotor.mass @ rotor.translation((GRAVITY, 0.0))
+    return np.asarray(rotor.mass @ rotor.translation((GRAVITY, 0.0)), dtype=float)
 
 
 def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Array:
@@ -80,7 +80,7 @@ def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Ar
     at = np.array(
         [[motions[i][rotor.planes[node][a]] for node in nodes for a in (0, 1)] for i in range(4)]
     )
-    return np.linalg.solve(at, motions @ force).reshape(2, 2)
+    return np.asarray(np.linalg.solve(at, motions @ force), dtype=float).reshape(2, 2)
 
 
 def rigid_motions(rotor: Rotor) -> Array:
@@ -182,7 +182,7 @@ def static_equilibrium(
         return journal, off, np.eye(2 * count) + condensed @ softness
 
     if count == 2:
-        loads = reactions_by_statics(rotor, force, nodes).ravel()
+        loads: Array = reactions_by_statics(rotor, force, nodes).ravel()
         journal, off, _ = answer(loads)
         off = np.zeros_like(off)
     else:
@@ -207,6 +207,6 @@ def static_equilibrium(
     displacement[free] = inner[:, -1] - inner[:, :-1] @ displacement[held]
     residual = float(np.abs(off).max()) / total
     return StaticEquilibrium(
-        tuple(nodes), loads.reshape(-1, 2), journal.reshape(-1, 2), displacement,
+        tuple(nodes), np.asarray(loads, dtype=float).reshape(-1, 2), journal.reshape(-1, 2), displacement,
         converged=residual < TOLERANCE, residual=residual,
     )  # fmt: skip
