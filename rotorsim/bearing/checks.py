@@ -33,7 +33,7 @@ class DerivedNumbers:
     viscosity : float
         mu [Pa s].
     unit_load : float or None
-        W/(L D) [Pa]; None if the load is a result.
+        W/(L D) [Pa]; None if the load is a result, or none.
     sommerfeld_number : float or None
         S = mu N L D (R/c)^2/W, N in rev/s; None if the load is a result.
     reynolds_number : float
@@ -113,7 +113,7 @@ def derived_numbers(case: Case, speed: float) -> DerivedNumbers:
     u = speed * radius
     reynolds = oil.density * u * clearance / mu
     unit_load = sommerfeld = None
-    if isinstance(case.target, LoadTarget):
+    if isinstance(case.target, LoadTarget) and case.target.load > 0.0:
         unit_load = case.target.load / (bearing.length * bearing.diameter)
         sommerfeld = mu * speed / (2.0 * math.pi) / unit_load * (radius / clearance) ** 2
     rise = 4.0 * math.pi * mu * u * radius / (rho_cp * clearance**2)

@@ -45,7 +45,7 @@ class DrawingNumbers:
     clearance_ratio : float
         c/R.
     unit_load : float or None
-        W/(L D) [Pa]; None if the load is a result.
+        W/(L D) [Pa]; None if the load is a result, or none.
     weight_to_load : float or None
         Rotor's weight per bearing over the load; None without one of them.
     """
@@ -80,7 +80,7 @@ def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbe
     0.981
     """
     bearing = case.bearing
-    load = case.target.load if isinstance(case.target, LoadTarget) else None
+    load = (case.target.load or None) if isinstance(case.target, LoadTarget) else None
     return DrawingNumbers(
         diameter=bearing.diameter,
         length_to_diameter=bearing.length / bearing.diameter,

@@ -18,6 +18,7 @@ from ..film.pad_solution import solve_pads
 from ..film.solution import FilmSolution, WarmStart, solve_film
 from ..model import Case, Cavitation, InletModel, LoadTarget, ViscosityResponse
 from ..model.entries import Quantity
+from ..model.operating import is_unloaded
 from ..status import SolveStatus
 from .checks import regime_warnings
 from .dynamics import (
@@ -111,6 +112,8 @@ def operating_point(
     stiffness, damping, frequency_ratio = dynamics.stated_coefficients()
     center = turn @ state.displacement[:2]
     load = float(np.hypot(state.force[0], state.force[1]))
+    if is_unloaded(case.target) and not case.bearing.pads:
+        load = 0.0  # and not the residual
     clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
     viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
     flow = solved_flow(solution)

@@ -84,7 +84,8 @@ class LoadSearch:
         """Newton's next displacements, and how far the force is off, relative to the load."""
         scales = self.geometry.displacements.scales / self.clearance
         missing = (state.force + self.load) * scales
-        off = math.hypot(*missing) / math.hypot(*(self.load * scales))
+        size = math.hypot(*(self.load * scales)) or pressure_force(state)
+        off = math.hypot(*missing) / size
         stiffness = stiffness_matrix(state) * scales[:, None] * scales[None, :]
         step = scales * _newton_step(stiffness, missing, self.clearance)
         following = self.allowed(state.displacement, state.displacement + step)
@@ -168,6 +169,12 @@ class AttitudeSearch:
     def at(self, angle: float) -> Array:
         """Return the position at an attitude angle [rad]."""
         return self.eccentricity * np.array([math.cos(angle), math.sin(angle)])
+
+
+def pressure_force(state: FilmState) -> float:
+    """Integral of |p| over the film [N]: the scale of forces where there is no load."""
+    pressures = np.abs(state.solution.pressure) * state.operator.area
+    return state.problem.geometry.multiplicity * float(np.sum(pressures)) or 1.0
 
 
 def _newton_step(stiffness: Array, missing: Array, clearance: float) -> Array:

@@ -131,7 +131,8 @@ def first_positions(field: ForceField) -> list[Position]:
         if isinstance(target, LoadTarget):
             if size < _NOTHING * target.load:
                 continue
-            misfit = math.hypot(misfit, math.log(size / target.load))
+            aside = math.log(size / target.load) if target.load > 0.0 else size
+            misfit = math.hypot(misfit, aside)
             missing = math.hypot(force[0] + target.load, force[1])
         found.append((abs(misfit), abs(missing), position))
     nearest = sorted(found)[:_TRIALS]

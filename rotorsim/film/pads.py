@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from ..model import Bearing, EccentricityTarget, Pad, Target
 from .banded import NoFilmError
+from .equilibrium import pressure_force
 from .geometry import CENTER, FilmGeometry, PadUnknowns, pad_unknowns
 from .layers import LayerIntegrals
 from .linearization import stiffness_matrix
@@ -285,9 +286,10 @@ class PadSearch:
             off = max(off, 1.0) if missing[0] >= 0.0 else off
             step = self._turn(q, missing, stiffness, SLACK * min(off, 1.0) * carried)
         else:
-            off = float(np.linalg.norm(missing)) / self.target.load
+            load = self.target.load or pressure_force(state)
+            off = float(np.linalg.norm(missing)) / load
             # A journal on one pad alone has no stiffness across: let it slide, not leap.
-            slack = SLACK * min(off, 1.0) * self.target.load / self.whole.bearing.radial_clearance
+            slack = SLACK * min(off, 1.0) * load / self.whole.bearing.radial_clearance
             stiffness[[0, 1], [0, 1]] += slack
             step = _solve(stiffness, missing)
         following = self.allowed(q, q + weights * step)

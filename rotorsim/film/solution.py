@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Bearing, Case, EccentricityTarget, LoadTarget, ThermalModel
+from ..model import Bearing, Case, Cavitation, EccentricityTarget, LoadTarget, ThermalModel
+from ..model.operating import is_unloaded
 from ..status import SolveStatus
 from .banded import NoFilmError, SingularFilmError
 from .equilibrium import (
@@ -178,8 +179,9 @@ def _no_position(failed: FilmSolution, case: Case) -> str:
 def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
     """Solve a plain, aligned film, with x along the line of centres."""
     clearance, target = case.bearing.radial_clearance, case.target
-    if isinstance(target, EccentricityTarget):
-        position = (target.eccentricity_ratio * clearance, 0.0)
+    if isinstance(target, EccentricityTarget) or is_unloaded(target):
+        eps = target.eccentricity_ratio if isinstance(target, EccentricityTarget) else 0.0
+        position = (eps * clearance, 0.0)
         problem = film_problem(case, speed, case.bearing, position)
         film = _iterate(problem, np.array(position), None, initial)
         return _conclude(problem, film, _load_line(film.state), None, film.iterations)
@@ -242,7 +244,7 @@ def graded_eccentricity(eps: float) -> float:
 
 def _load_line(state: FilmState) -> float:
     """Return the angle from the load line, along which the film carries, to the film's x axis."""
-    if not state.force.any():
+    if not (state.force.any() and state.displacement[:2].any()):
         return 0.0
     return -math.atan2(-state.force[1], -state.force[0])
 
@@ -397,7 +399,12 @@ def _conclude(
 ) -> FilmSolution:
     """Map the last iterate to a `SolveStatus` with its message."""
     status, message = SolveStatus.CONVERGED, ""
-    if not film.state.solution.pressure.max() > 0.0 or not film.state.solution.full.any():
+    solution = film.state.solution
+    concentric = not film.state.displacement[:2].any() and problem.bearing.is_plain
+    unruptured = problem.settings.cavitation is Cavitation.FULL_SOMMERFELD
+    if concentric and unruptured:
+        pass  # no pressure, and yet a film
+    elif not solution.pressure.max() > 0.0 or not solution.full.any():
         status = SolveStatus.STARVED
         message = "no film forms: the pressure is nowhere above zero. " + (
             "The oil of the grooves does not fill the bearing anywhere behind them: move a groove "

@@ -13,9 +13,9 @@ from .entries import Angle, Example, Mass, Number, Quantity, Speed, check
 
 MAX_COUNT = 100_000
 Eccentricity = Annotated[
-    float, Number(above=0.0, below=1.0, hint="it lies between 0 and 1, for example 0.5")
+    float, Number(least=0.0, below=1.0, hint="it lies between 0 and 1, for example 0.5")
 ]
-Load = Annotated[float, Quantity("force", "10 kN")]
+Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
 Count = Annotated[int, Number(least=1, most=MAX_COUNT)]
 
 
@@ -23,10 +23,10 @@ Count = Annotated[int, Number(least=1, most=MAX_COUNT)]
 class EccentricityTarget:
     """The journal at a given eccentricity ratio; the load it carries is a result.
 
-    Below 1 in a bore; between tilting pads it may be more.
+    Below 1 in a bore; between tilting pads it may be more. 0: the journal is centred.
     """
 
-    eccentricity_ratio: Annotated[float, Number(above=0.0)]
+    eccentricity_ratio: Annotated[float, Number(least=0.0)]
 
     def __post_init__(self) -> None:
         check(self, "operating")
@@ -34,7 +34,7 @@ class EccentricityTarget:
 
 @dataclass(frozen=True)
 class LoadTarget:
-    """A given static load [N] along x; the position is searched."""
+    """A given static load [N] along x; the position is searched. 0: no load, a vertical shaft."""
 
     load: Load
 
@@ -43,6 +43,12 @@ class LoadTarget:
 
 
 Target = EccentricityTarget | LoadTarget
+
+
+def is_unloaded(target: Target) -> bool:
+    """Whether there is no static load, or no eccentricity to carry one."""
+    given = target.load if isinstance(target, LoadTarget) else target.eccentricity_ratio
+    return given == 0.0
 
 
 @dataclass(frozen=True)
@@ -111,7 +117,7 @@ class Operating:
     speed : tuple of float or SpeedRange
         Ascending [rad/s]; a range becomes its values.
     eccentricity_ratio, load : float or None
-        One of them; the load in N.
+        One of them; the load in N. 0: no static load, or the journal in the centre.
     load_direction : float
         Angle of the load in the frame in which the bearing is given [rad].
     """

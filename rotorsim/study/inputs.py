@@ -157,12 +157,13 @@ def _operation(scenario: Scenario) -> Rows:
         rows.append(Row("eccentricity ratio (given)", number(target.eccentricity_ratio)))
     else:
         rows.append(Row("static load (given)", f"{number(target.load / 1e3)} kN"))
+    if isinstance(target, LoadTarget) and target.load > 0.0:
         unit = target.load / (scenario.bearing.length * scenario.bearing.diameter)
         rows.append(Row("specific load W/(L D)", f"{number(unit / 1e6, 3)} MPa"))
     if scenario.load_direction:
         rows.append(Row("load direction", _degrees(scenario.load_direction)))
     rows += list(_rotor(scenario))
-    if scenario.rotor is not None and isinstance(target, LoadTarget):
+    if scenario.rotor is not None and isinstance(target, LoadTarget) and target.load > 0.0:
         weight = scenario.rotor.total_mass * STANDARD_GRAVITY / target.load
         rows.append(Row("rotor's weight over load", number(weight, 3)))
     return rows

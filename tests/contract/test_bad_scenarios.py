@@ -161,7 +161,8 @@ BAD = [
     # the target
     (ECCENTRICITY, "", "operating", ["eccentricity_ratio or load", 'load = "10 kN"']),
     (ECCENTRICITY, ECCENTRICITY + '\nload = "1 kN"', "operating.load", ["1 kN", "not both"]),
-    (ECCENTRICITY, 'load = "0 N"', "operating.load", ["0 N", "above 0"]),
+    (ECCENTRICITY, 'load = "0 N"', "operating.load", ["0 N", "above 0", '"full_sommerfeld"']),
+    (ECCENTRICITY, 'load = "-1 N"', "operating.load", ["-1 N", "0 or more"]),
     (ECCENTRICITY, 'load = "100 kg"', "operating.load", ["100 kg", "kgf"]),
     # speeds
     (SPEED, '"0 rpm"', "operating.speed", ["0 rpm", "above 0"]),

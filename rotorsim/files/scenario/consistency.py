@@ -45,7 +45,10 @@ def settled(scenario: Scenario, tables: Tables) -> Scenario:
     orbit = scenario.orbit
     if orbit is not None:
         orbit = settled_orbit(orbit, scenario, tables["orbit"])
-    return replace(scenario, thermal=thermal, orbit=orbit)
+    settled_scenario = replace(scenario, thermal=thermal, orbit=orbit)
+    for _ in settled_scenario.cases():  # each checks itself
+        pass
+    return settled_scenario
 
 
 def check_bearings(scenario: Scenario) -> None:
