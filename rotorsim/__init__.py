@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from .machine.statespace import state_space
     from .orbit import Orbit
     from .shipped import shipped_scenarios, shipped_tables
-    from .show.recording import open_viewer
-    from .show.recordings import record
+    from .show.job import record
+    from .show.viewer import open_viewer
     from .status import SolveStatus, Stability
     from .study.orbits import simulate_orbit
     from .study.sweep import tabulate
@@ -73,8 +73,8 @@ _HOMES = {
     "machine.statespace": ("state_space",),
     "orbit": ("Orbit",),
     "shipped": ("shipped_scenarios", "shipped_tables"),
-    "show.recording": ("open_viewer",),
-    "show.recordings": ("record",),
+    "show.job": ("record",),
+    "show.viewer": ("open_viewer",),
     "status": ("SolveStatus", "Stability"),
     "study.orbits": ("simulate_orbit",),
     "study.sweep": ("tabulate",),

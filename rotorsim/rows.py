@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 RPM = 30.0 / math.pi
 """Revolutions per minute in one rad/s."""
@@ -64,8 +64,8 @@ class Quantity:
         """Title of a figure's axis."""
         return f"{self.label} [{self.unit or '-'}]"
 
-    def shown(self, value: float) -> float:
-        """Convert an SI value to the unit shown."""
+    def shown(self, value: Any) -> Any:
+        """Convert SI values (a number or an array) to the unit shown."""
         return value * self.factor + self.offset
 
     def text(self, value: float | None, digits: int | None = None) -> str:

@@ -245,7 +245,7 @@ def view(
 
     Example: rotorsim view logs/dal.rrd
     """
-    from ..show.recording import open_viewer
+    from ..show.viewer import open_viewer
 
     if str(recording).startswith("-"):  # the viewer would take it for an option
         recording = Path(".").absolute() / recording

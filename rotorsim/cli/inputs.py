@@ -6,7 +6,6 @@ import logging
 import math
 import threading
 from collections.abc import Iterator
-from concurrent.futures import Executor
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
@@ -16,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
     from ..model import Case

@@ -65,8 +65,7 @@ def orbit(
     """
     from ..files.scenario import load_scenario
     from ..orbit.description import describe_orbit
-    from ..show.orbit_pictures import write_animation, write_orbit_figures
-    from ..show.writing import record_scenario
+    from ..show.job import orbit_figures, record_scenario, save_figures
     from ..study.orbits import orbit_settings
 
     loaded = load_scenario(scenario)
@@ -83,12 +82,16 @@ def orbit(
     )
     for reason in missing:
         output.warn(f"left out of the recording: {reason}")
-    written = write_orbit_figures(orbits, folder, loaded.title, steady) if figures else []
+    written: list[Path] = []
+    if figures:
+        written += save_figures(orbit_figures(orbits, loaded.title, steady), folder, ("png",))
     for wanted, suffix in ((gif, ".gif"), (mp4, ".mp4")):
         if wanted:
+            from ..show.figures import animate_orbits
+
             output.note(f"drawing orbit{suffix}")
             target = folder / f"orbit{suffix}"
-            written.append(write_animation(orbits, target, loaded.title, steady))
+            written.append(animate_orbits(orbits, target, loaded.title, steady))
     rows = [describe_orbit(one) for one in orbits]
     output.document({"recording": path, "figures": written, "orbits": rows})
     if not (output.json or output.quiet):
@@ -158,9 +161,9 @@ def _simulate(
     with ExitStack() as stack:
         show: Callable[[Orbit], None] | None = None
         if live:
-            from ..show.recordings import live_view
+            from ..show.recording.live import LiveView
 
-            show = stack.enter_context(live_view(loaded.title))
+            show = stack.enter_context(LiveView(loaded.title)).show
         for name in models:
             with late_progress(output, "force map, kept for later runs") as prepared:
                 prepare_film(loaded, name, prepared)

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..bearing.operating_point import strict_json
 from ..errors import InputError, RotorsimError
 
 if TYPE_CHECKING:
@@ -68,6 +67,8 @@ class Output:
     def document(self, value: Any) -> None:
         """Print results for programs: the one JSON document."""
         if self.json:
+            from ..bearing.operating_point import strict_json
+
             with _on_stdout():
                 print(strict_json(value))
 

@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING
 
-from ..bearing.description import point_title
-
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
     from ..study.sweep import Progress
@@ -34,6 +32,8 @@ def film_progress(output: Output, total: int) -> Iterator[Progress | None]:
 def _bar(output: Output, total: int) -> Iterator[Progress]:
     from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
     from rich.progress import Progress as Bar
+
+    from ..bearing.description import point_title
 
     columns = (
         TextColumn("{task.description}"),

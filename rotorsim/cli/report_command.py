@@ -32,8 +32,8 @@ def report(
     Example: rotorsim report scenarios/quick.toml -o quick.html
     """
     from ..files.scenario import load_scenario
-    from ..show.main_job import compute
     from ..show.report import write_report
+    from ..study.main_job import compute
 
     loaded = load_scenario(scenario)
     page = file or Path("reports") / f"{scenario.stem}.html"

@@ -22,8 +22,8 @@ def run(
     Example: rotorsim run scenarios/dal.toml
     """
     from ..files.scenario import load_scenario
-    from ..show.main_job import compute, summary
-    from ..show.writing import write_results
+    from ..show.job import write_results
+    from ..study.main_job import compute, summary
 
     loaded = load_scenario(scenario)
     name = scenario.stem

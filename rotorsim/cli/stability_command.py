@@ -164,7 +164,7 @@ class _Work:
 
     def finish(self, document: dict[str, Any], figures: Any, parts: Callable[[], list]) -> None:
         """Write the figures, print the document or the tables."""
-        from ..show.stability_figures import save_figures
+        from ..show.job import save_figures
 
         if self.folder is not None:
             document.setdefault("files", []).extend(save_figures(figures, self.folder))
@@ -193,18 +193,16 @@ def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[flo
 def _show_map(
     work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
 ) -> int:
-    from ..show.stability_figures import plane_figure
+    from ..show.stability_figures import plane_figures
     from .stability_results import plane_document, plane_table
 
     plane, title = _plane(work, source, axes, held)
     document = {"map": plane_document(plane), "points": plane.solved_points}
-    name = f"map_{plane.x}_{plane.y}"
     if work.folder is not None:
         from ..bearing.netcdf import write
 
-        document["files"] = [write(plane.dataset, work.folder / f"{name}.nc")]
-    figures = ((name, plane_figure(plane, title)) for _ in range(1))
-    work.finish(document, figures, lambda: plane_table(plane))
+        document["files"] = [write(plane.dataset, work.folder / f"map_{plane.x}_{plane.y}.nc")]
+    work.finish(document, plane_figures(plane, title), lambda: plane_table(plane))
     return _report_failed(work.output, plane.failed_points, plane.solved_points)
 
 
@@ -254,7 +252,7 @@ def _show_tolerances(
     texts: list[str] | None,
     samples: int | None,
 ) -> int:
-    from ..show.stability_figures import tolerance_figure
+    from ..show.stability_figures import tolerance_figures
     from ..study.tolerances import study_tolerances
     from .stability_results import study_document, study_tables
 
@@ -283,7 +281,7 @@ def _show_tolerances(
             workers=None if executor is not None else work.workers,
             progress=progress,
         )
-    figures = (("tolerances", tolerance_figure(study, scenario.title)) for _ in range(1))
+    figures = tolerance_figures(study, scenario.title)
     work.finish(study_document(study), figures, lambda: study_tables(study))
     failed = study.samples.failures
     if failed:

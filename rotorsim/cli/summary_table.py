@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from rich.text import Text
 
 from ..rows import QUANTITIES, RPM
-from ..study.wording import curve_title, thresholds_text, verdict_at_top
+from ..study.wording import curve_title, late_whirl, thresholds_text, verdict_at_top
 from .output import as_typed
 from .stability_tables import orbit_table
 from .tables import grid
@@ -40,6 +40,9 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
         yield threshold_table(curves)
     if said["orbits"]:
         yield orbit_table(said["orbits"])
+        lines = "\n".join(late_whirl(said["orbits"], curves))
+        if lines:
+            yield lines
     yield files_table(said["files"])
     for path in said["files"].get("recording", []):
         yield f"Play it back: rotorsim view {as_typed(path)}"

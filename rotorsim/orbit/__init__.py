@@ -4,7 +4,15 @@ Everything is SI and in the load frame. `simulate(OrbitProblem(...))` gives an `
 `simulate_linear` is the short way with given stiffness and damping.
 """
 
-from .analysis import OrbitAnalysis, WhirlRange, analyse, initial_growth, whirl_range
+from .analysis import (
+    OrbitAnalysis,
+    WhirlRange,
+    analyse,
+    initial_growth,
+    speed_cascade,
+    steady_spectrum,
+    whirl_range,
+)
 from .clearance import contact_boundary, minimum_film
 from .equilibrium import find_equilibrium, linearize_force
 from .film_force import (
@@ -30,7 +38,7 @@ from .loads import BaseMotion, BaseShock, Controller, HarmonicForce, StepForce
 from .modes import Growth, Modes, fit_modes, growth_rate
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import Method, OrbitProblem
-from .recognition import Recognition, recognise, steady_part
+from .recognition import Recognition, once_per_turn, recognise, steady_part
 from .spectrum import (
     Cascade,
     Ellipse,
@@ -86,6 +94,7 @@ __all__ = [
     "linearize_force",
     "loaded_film",
     "minimum_film",
+    "once_per_turn",
     "operating_film",
     "orbit_ellipse",
     "poincare_points",
@@ -95,7 +104,9 @@ __all__ = [
     "simulate_linear",
     "simulate_pieces",
     "spectrum",
+    "speed_cascade",
     "steady_part",
+    "steady_spectrum",
     "whirl_frequency_ratio",
     "whirl_range",
 ]

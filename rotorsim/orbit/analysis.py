@@ -9,8 +9,8 @@ import numpy as np
 from ..errors import InputError
 from .modes import Growth, growth_rate
 from .orbit import Orbit, OrbitStatus
-from .recognition import Recognition, recognise
-from .spectrum import Cascade, Ellipse, cascade, orbit_ellipse
+from .recognition import Recognition, recognise, steady_part
+from .spectrum import Cascade, Ellipse, Spectrum, cascade, orbit_ellipse, spectrum
 
 SMALL_MOTION = 0.1
 """Distance from equilibrium over clearance up to which a growth rate is measured."""
@@ -19,6 +19,8 @@ WHIRLING = 0.05
 _SUBSYNCHRONOUS = (0.15, 0.85)
 _LEAST_REVOLUTIONS = 4
 _CASCADE_REVOLUTIONS = 16
+_CASCADE_BLOCKS = (16, 32)
+"""Revolutions behind one spectrum of a cascade that is shown: of a short and of a long run."""
 
 
 @dataclass(frozen=True)
@@ -121,6 +123,32 @@ def initial_growth(orbit: Orbit) -> Growth | None:
         return growth_rate(part)
     except InputError:  # ended too early to measure anything
         return None
+
+
+def steady_spectrum(orbit: Orbit) -> Spectrum | None:
+    """Spectrum of a run at constant speed: of its steady part, of all of it where it has none.
+
+    None for a run that comes to rest, through the speeds, or too short for a spectrum.
+    """
+    if not orbit.constant_speed or orbit.status is OrbitStatus.SETTLED or not orbit.t.size:
+        return None
+    try:
+        return spectrum(steady_part(orbit) or orbit)
+    except InputError:
+        return None
+
+
+def speed_cascade(orbit: Orbit) -> Cascade | None:
+    """Cascade of a run through the speeds; None at constant speed, or where it is too short."""
+    if orbit.constant_speed or not orbit.t.size:
+        return None
+    short, long = _CASCADE_BLOCKS
+    turns = abs(float(orbit.revolutions[-1] - orbit.revolutions[0]))
+    try:
+        rows = cascade(orbit, long if turns >= 10 * long else short)
+    except InputError:
+        return None
+    return rows if np.ptp(rows.speed) > 0.0 else None
 
 
 def whirl_range(orbit: Orbit) -> WhirlRange | None:

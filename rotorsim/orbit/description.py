@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from ..rows import QUANTITIES, RPM, Row, facts_html, number, result_html
-from .analysis import analyse
+from .analysis import WHIRLING, analyse
 from .orbit import Orbit
 from .spectrum import Ellipse
 
@@ -161,7 +161,8 @@ def whirl_range_text(found: Mapping[str, Any]) -> str:
         for key in ("first_speed", "last_speed", "strongest_speed")
     )
     return (
-        f"whirls from {first} to {last} rpm, most at {most} rpm: "
+        f"whirls by more than {100.0 * WHIRLING:.0f} % of the clearance from {first} to {last} rpm,"
+        f" most at {most} rpm: "
         f"{number(found['amplitude'] * MICRO, 3)} µm at "
         f"{number(found['frequency'] / (2.0 * math.pi))} Hz"
     )

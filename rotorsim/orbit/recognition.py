@@ -96,6 +96,22 @@ def steady_part(orbit: Orbit) -> Orbit | None:
     return None if start is None else orbit.part(start)
 
 
+def once_per_turn(orbit: Orbit) -> Array | None:
+    """Positions at whole turns of the shaft in the steady part (Poincare points), (k, 2) [m].
+
+    None where the run does not end in a steady motion.
+    """
+    if orbit.status not in (
+        OrbitStatus.PERIODIC, OrbitStatus.LIMIT_CYCLE, OrbitStatus.QUASI_PERIODIC,
+    ):  # fmt: skip
+        return None
+    steady = steady_part(orbit)
+    if steady is None or not steady.t.size:
+        return None
+    points = poincare_points(steady)
+    return np.column_stack([points.x, points.y])
+
+
 def _swing(orbit: Orbit) -> float:
     """Root mean square distance from the mean position [m]."""
     mean, z, weights = _middle(orbit)

@@ -1,9 +1,8 @@
-"""Figures of the stability analyses."""
+"""Figures of the stability analyses of the command line."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,78 +18,35 @@ if TYPE_CHECKING:
     from ..study.tolerances import ToleranceStudy
 
 
-def save_figures(
-    figures: Iterator[tuple[str, Figure]], folder: Path, formats: Sequence[str] = ("png", "svg")
-) -> list[Path]:
-    """Write named figures into `folder`."""
-    from .figures import save_figure
-
-    return [
-        path
-        for name, figure in figures
-        for path in save_figure(figure, folder / name, formats=formats)
-    ]
-
-
-def plane_figure(plane: Plane, title: str = "") -> Figure:
+def plane_figures(plane: Plane, title: str = "") -> Iterator[tuple[str, Figure]]:
     """Map of a plane: stable, unstable, and what only heating makes unstable."""
-    from .figures import PlaneAxis, stability_plane
+    from .figures import stability_map
 
-    def axis(name: str) -> PlaneAxis:
-        quantity = QUANTITIES[name]
-        values = np.asarray(plane.dataset[name].values, dtype=float)
-        return PlaneAxis(quantity.axis, values * quantity.factor + quantity.offset)
-
-    models = plane.models
-    cold = "isothermal" if "isothermal" in models else models[0]
-    hot = "thd" if "thd" in models else models[-1]
     heading = "\n".join(text for text in (title, held_text(plane.held)) if text)
-    heated = plane.growth(hot) if hot != cold else None
-    return stability_plane(axis(plane.x), axis(plane.y), plane.growth(cold), heated, title=heading)
+    name = f"map_{plane.x}_{plane.y}"
+    yield name, stability_map(plane.dataset, plane.x, plane.y, title=heading)
+
+
+def tolerance_figures(study: ToleranceStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
+    """Histograms of threshold speed and critical mass, and what matters."""
+    from .figures import tolerance_histograms
+
+    yield "tolerances", tolerance_histograms(study, title)
 
 
 def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tuple[str, Figure]]:
     """One diagram for each clearance (and further dimension), all its thermal models in it."""
-    from .figures import EigenvalueCurve, campbell_diagram
+    from .figures import campbell_diagram
 
     groups: dict[tuple, list[Campbell]] = {}
     for curve in curves:
         key = tuple((n, v) for n, v in curve.choices.items() if n != "thermal_model")
         groups.setdefault(key, []).append(curve)
     for number, (key, group) in enumerate(groups.items(), start=1):
-        shown = [
-            EigenvalueCurve(
-                str(curve.choices["thermal_model"]),
-                curve.branches.parameter,
-                curve.branches.eigenvalues,
-                curve.branches.whirl_sense,
-                [(one.speed, one.whirl_frequency) for one in curve.thresholds],
-            )
-            for curve in group
-        ]
-        held = held_text({name: value for name, value in key if np.isfinite(value)})
+        held = held_text({n: v for n, v in key if n in QUANTITIES and np.isfinite(v)})
         heading = "\n".join(text for text in (title, held) if text)
         name = "campbell" if len(groups) == 1 else f"campbell_{number}"
-        yield name, campbell_diagram(shown, title=heading)
-
-
-def tolerance_figure(study: ToleranceStudy, title: str = "") -> Figure:
-    """Histograms of threshold speed and critical mass, and what matters."""
-    from .figures import tolerance_histograms
-
-    outputs = study.samples.outputs
-    mass = study.rotor.rigid_mass
-    failed = [sample for sample, _ in study.samples.failures]
-    return tolerance_histograms(
-        np.delete(outputs["threshold_speed"], failed),
-        np.delete(outputs["critical_mass"], failed),
-        study.importance,
-        study.operating_speed,
-        mass,
-        (study.nominal["threshold_speed"], study.nominal["critical_mass"]),
-        title,
-        len(failed),
-    )
+        yield name, campbell_diagram(group, title=heading)
 
 
 def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
@@ -98,7 +54,7 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
     from ..machine.control import receptance
     from ..machine.spectrum import MatrixSpectrum
     from ..machine.tracking import track_modes
-    from .figures import OrbitPicture, bode_plot, orbit_plot, root_locus
+    from .figures import bode_plot, orbit_plot, root_locus
 
     system, gain = study.system, study.feedback.gain
     heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
@@ -108,10 +64,7 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
         return np.asarray(system.A) - factor * np.asarray(system.B) @ gain
 
     locus = track_modes(MatrixSpectrum(closed_loop), share)
-    yield (
-        "root_locus",
-        root_locus(locus.parameter, locus.eigenvalues, "share of the gain [-]", heading),
-    )
+    yield "root_locus", root_locus(locus, "share of the gain [-]", heading)
     frequency = np.geomspace(0.05 * study.speed, 4.0 * study.speed, 400)
     closed = study.feedback.closed_loop(system)
     responses = [
@@ -119,14 +72,8 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
         ("with actuator", receptance(closed, frequency)[0, 0]),
     ]
     yield "bode", bode_plot(frequency, responses, "receptance x per force x [m/N]", title=heading)
-    runs = (("film alone", study.passive_orbit), ("with actuator", study.controlled_orbit))
-    pictures = [
-        OrbitPicture(
-            name, f"{name}: {one.status.value.replace('_', ' ')}", one.x, one.y,
-            one.radial_clearance, np.asarray(study.equilibrium),
-        )
-        for name, one in runs
-        if one is not None
-    ]  # fmt: skip
-    if pictures:
-        yield "control_orbits", orbit_plot(pictures, heading)
+    runs = {"film alone": study.passive_orbit, "with actuator": study.controlled_orbit}
+    known = {name: orbit for name, orbit in runs.items() if orbit is not None}
+    if known:
+        names = [f"{name}: {one.status.value.replace('_', ' ')}" for name, one in known.items()]
+        yield "control_orbits", orbit_plot(list(known.values()), heading, names=names)

@@ -19,7 +19,6 @@ from ..rows import number
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
-    from ..machine.map import StabilityMap
 
 
 def rotor_words(rotor: Rotor | None) -> str:
@@ -83,52 +82,6 @@ class StabilityCurve:
             return None
         rate = self.eigenvalues[:, 0].real
         return rate if self.undamped is None else np.where(self.undamped[:, 0], 0.0, rate)
-
-
-@dataclass(frozen=True)
-class MapPlane:
-    """Stability map of one clearance: growth rates over speed and mass.
-
-    Attributes
-    ----------
-    radial_clearance : float
-        [m]
-    speed : (n,) array
-        [rad/s]
-    mass : (m,) array
-        Per bearing [kg].
-    isothermal_growth, heated_growth : (n, m) arrays
-        Above 0 where unstable, NaN where unknown [1/s]. With one thermal model in the
-        table both are its.
-    """
-
-    radial_clearance: float
-    speed: Array
-    mass: Array
-    isothermal_growth: Array
-    heated_growth: Array
-
-
-def map_planes(chart: StabilityMap) -> list[MapPlane]:
-    """Planes of a map, one for each clearance."""
-    dataset = chart.dataset
-    models = [str(model) for model in dataset["thermal_model"].values]
-    cold = models.index("isothermal") if "isothermal" in models else 0
-    hot = models.index("thd") if "thd" in models else len(models) - 1
-    planes = []
-    for place, clearance in enumerate(dataset["radial_clearance"].values):
-        rate = dataset["growth_rate"].isel(radial_clearance=place)
-        growth = rate.transpose("thermal_model", "speed", "mass").values
-        planes.append(
-            MapPlane(
-                radial_clearance=float(clearance),
-                speed=dataset["speed"].values,
-                mass=dataset["mass"].values,
-                isothermal_growth=growth[cold],
-                heated_growth=growth[hot],
-            )
-        )
-    return planes
 
 
 def stability_curves(
@@ -219,7 +172,7 @@ class Campbell:
     choices : dict
         ``thermal_model``, ``radial_clearance`` [m], and any further dimension of the table.
     branches : Modes
-        The oscillating ones of lowest frequency.
+        The oscillating ones of lowest frequency, or all.
     growth : (n,) array
         Largest real part of all eigenvalues [1/s], non-oscillating ones included, those without
         damping left out.
@@ -254,15 +207,16 @@ class Campbell:
         }
 
 
-def campbell_curves(table: CoefficientTable, rotor: Rotor, count: int = 8) -> list[Campbell]:
+def campbell_curves(table: CoefficientTable, rotor: Rotor, count: int | None = 8) -> list[Campbell]:
     """Campbell data of `rotor` on every curve of `table`.
 
     Parameters
     ----------
     table : CoefficientTable
     rotor : Rotor
-    count : int
-        Branches to keep, those of lowest frequency.
+    count : int or None
+        Oscillating branches to keep, those of lowest frequency; None: all branches, also those
+        that do not oscillate.
 
     Raises
     ------
@@ -283,13 +237,13 @@ def campbell_curves(table: CoefficientTable, rotor: Rotor, count: int = 8) -> li
 
 
 def _campbell(
-    table: CoefficientTable, rotor: Rotor, count: int, choices: dict[str, Any]
+    table: CoefficientTable, rotor: Rotor, count: int | None, choices: dict[str, Any]
 ) -> Campbell:
     machine = Machine.on_identical(rotor, TableSupport(table.interpolator()))
     every = modes(machine)
     return Campbell(
         choices=choices,
-        branches=every.oscillating().lowest(count),
+        branches=every if count is None else every.oscillating().lowest(count),
         growth=every.largest_growth_rate,
         thresholds=tuple(threshold_speeds(machine)),
     )

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from ..bearing import description
 from ..rows import RPM, number
@@ -74,6 +75,30 @@ def verdict_at(curve: StabilityCurve) -> str | None:
     if curve.growth_rate is None or math.isnan(curve.growth_rate[-1]):
         return None
     return verdict_word(float(curve.growth_rate[-1]))
+
+
+def late_whirl(
+    orbits: Iterable[Mapping[str, Any]], curves: Sequence[StabilityCurve]
+) -> Iterator[str]:
+    """Say why a run-up shows its whirl above the threshold speed, where it does.
+
+    `orbits` as `rotorsim.orbit.description.describe_orbit` gives them.
+    """
+    for said in orbits:
+        seen, model = said["whirl_range"], said["thermal_model"]
+        for curve in curves:
+            same = curve.choices["thermal_model"] == model and math.isclose(
+                curve.choices["radial_clearance"], said["radial_clearance"], rel_tol=1e-6
+            )
+            if seen is None or not same or not curve.threshold_speeds:
+                continue
+            threshold, first = curve.threshold_speeds[0], seen["first_speed"]
+            if said["speed"][1] > said["speed"][0] and threshold < first:
+                yield (
+                    f"threshold at {threshold * RPM:.0f} rpm ({model}), but the whirl is seen from "
+                    f"{first * RPM:.0f} rpm on: beyond the threshold it needs time to grow, while "
+                    "the speed goes on rising"
+                )
 
 
 def verdict_at_top(curve: StabilityCurve) -> str:

@@ -128,7 +128,6 @@ def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
     from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, simulate
     from rotorsim.rotor import Rotor
     from rotorsim.show.recording.live import LiveView
-    from rotorsim.show.recordings import orbit_tracks
 
     path = tmp_path / "live.rrd"
     stream = rr.RecordingStream("rotorsim", send_properties=False)
@@ -142,7 +141,7 @@ def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
         samples_per_revolution=16,
     )
     with LiveView("live", stream) as view:
-        orbit = simulate(problem, consume=lambda piece: view.show(orbit_tracks([piece])[0]))
+        orbit = simulate(problem, consume=view.show)
     batch = (
         RrdReader(str(path))
         .stream()

@@ -7,8 +7,8 @@ from browser import CHROMIUM, visit
 
 from rotorsim.files.scenario import Scenario
 from rotorsim.shipped import shipped_scenarios
-from rotorsim.show.main_job import compute
 from rotorsim.show.report import write_report
+from rotorsim.study.main_job import compute
 from rotorsim.study.sweep import as_table, sweep_points
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Debian's package chromium")

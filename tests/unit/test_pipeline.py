@@ -8,9 +8,9 @@ import pytest
 from rotorsim.bearing.operating_point import failed_point
 from rotorsim.errors import InputError
 from rotorsim.files.scenario import Scenario
-from rotorsim.show.main_job import Attempts, compute
-from rotorsim.show.writing import write_results
+from rotorsim.show.job import write_results
 from rotorsim.study import orbits as orbit_steps
+from rotorsim.study.main_job import Attempts, compute
 from rotorsim.study.orbits import static_position
 from rotorsim.study.stability import stability_curves
 from rotorsim.study.sweep import as_table, sweep_points
@@ -141,7 +141,7 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
     from dataclasses import replace
 
     from rotorsim.bearing.drawing import STANDARD_GRAVITY
-    from rotorsim.show.main_job import map_of
+    from rotorsim.study.main_job import map_of
 
     table = as_table(points, scenario)
     alone = replace(scenario, rotor=None)

@@ -2,37 +2,26 @@
 
 from __future__ import annotations
 
-import os
+import io
 import subprocess
-import sys
 import time
 
 import numpy as np
 import pyarrow as pa
 import pytest
 import rerun as rr
+from PIL import Image
 from rerun.chunk import RrdReader
+from sample_results import campbell_of, chart_of, orbit_of
 
 from rotorsim.errors import InputError
-from rotorsim.show.recording import (
-    CascadePicture,
-    EigenvaluePath,
-    FilmSurface,
-    MapPicture,
-    OrbitTrack,
-    RecordingContents,
-    Verdict,
-    classify,
-    open_viewer,
-    surfaces,
-    viewer,
-    write_recording,
-)
-from rotorsim.show.recording.chart import nice_ticks
-from rotorsim.show.recording.colormaps import colours
-from rotorsim.show.recording.map_view import raster, verdict_pixels
+from rotorsim.show import viewer
+from rotorsim.show.recording import RecordingContents, surfaces, write_recording
+from rotorsim.show.recording.charts import eigenvalues_at
+from rotorsim.show.recording.colours import colours
+from rotorsim.show.recording.runs import Run, frame_rows, thin
 from rotorsim.show.recording.series_view import envelope_rows, whirl_ratio
-from rotorsim.show.recording.timeline import frame_rows, thin
+from rotorsim.study.film_motion import FilmFrame
 
 C = 1e-4
 
@@ -44,14 +33,16 @@ def _strict():
     rr.set_strict_mode(False)
 
 
-def track(name="thd", count=3001, speed=(800.0, 800.0), whirl=0.48):
+def orbit(name="thd", count=3001, speed=(800.0, 800.0), whirl=0.48):
     t = np.linspace(0.0, 0.5, count)
     w = np.linspace(*speed, count)
     angle = np.concatenate([[0.0], np.cumsum(0.5 * (w[1:] + w[:-1]) * np.diff(t))])
     grow = 1e-6 * np.exp(6.0 * t)
     x, y = 3e-5 + grow * np.cos(whirl * angle), 4e-5 + grow * np.sin(whirl * angle)
-    force = np.stack([np.full(count, -1e4), 100.0 * np.sin(angle)], axis=-1)
-    return OrbitTrack(name, t, x, y, angle, w, C, np.array([3e-5, 4e-5]), force)
+    return orbit_of(
+        t, x, y, w, thermal_model=name, equilibrium=(3e-5, 4e-5), fx=np.full(count, -1e4),
+        fy=100.0 * np.sin(angle),
+    )  # fmt: skip
 
 
 def film(name="thd", speed=800.0, peak=2e6):
@@ -59,29 +50,29 @@ def film(name="thd", speed=800.0, peak=2e6):
     y = (np.arange(16) - 7.5) * 5e-3
     bump = np.clip(np.cos(theta), 0, None)[:, None] * (1 - (y / 0.04) ** 2)
     warm = 313.15 + 20.0 * bump if name == "thd" else None
-    return FilmSurface(name, speed, theta, y, peak * bump, warm, 0.05, C, np.array([3e-5, 4e-5]))
+    hottest = None if warm is None else 353.15
+    centre = np.array([3e-5, 4e-5])
+    return FilmFrame(name, speed, theta, y, peak * bump, warm, hottest, 0.05, C, centre)
 
 
-def path(name="thd"):
+def modes(name="thd"):
     speed = np.linspace(100.0, 1500.0, 15)
     values = np.stack([0.05 * speed - 40 + 0.48j * speed, 0.05 * speed - 40 - 0.48j * speed], 1)
-    return EigenvaluePath(name, speed, values, 800.0, 0.48)
+    return campbell_of(speed, values, name, thresholds=((800.0, 384.0),))
 
 
 def contents(**changes):
     speed, mass = np.linspace(100, 1500, 12), np.linspace(10, 500, 9)
     cold = 0.15 * speed[:, None] + 0.2 * mass - 300.0
-    hot = cold + 0.08 * speed[:, None]
+    rates = {"isothermal": cold, "thd": cold + 0.08 * speed[:, None]}
     given = {
         "title": "Test",
         "summary": "The THD orbit **grows**.",
-        "orbits": (track("isothermal"), track()),
+        "orbits": (orbit("isothermal"), orbit()),
         "films": (film("isothermal"), film(), film(speed=1200.0, peak=3e6)),
-        "eigenvalues": (path("isothermal"), path()),
-        "maps": (MapPicture("c", speed, mass, classify(cold, hot), 300.0, cold, hot),),
-        "cascades": (
-            CascadePicture("run-up", speed, np.linspace(1, 3000, 20), np.ones((12, 20)) * 1e-6),
-        ),
+        "modes": (modes("isothermal"), modes()),
+        "maps": (chart_of(speed, mass, rates, ("speed", "mass")),),
+        "rotor_mass": 300.0,
     }
     return RecordingContents(**{**given, **changes})
 
@@ -128,9 +119,9 @@ def test_layout_and_timelines_are_in_the_file(written):
 @pytest.mark.parametrize("name", ["isothermal", "thd"])
 def test_journal_positions_equal_the_simulated_ones(written, name):
     file, what = written
-    one = next(t for t in what.orbits if t.name == name)
+    one = next(t for t in what.orbits if t.thermal_model == name)
     index, rows = column(file, f"/orbit/{name}/journal_um", "Points2D:positions")
-    assert np.array_equal(index, np.round(one.time * 1e9).astype(np.int64))
+    assert np.array_equal(index, np.round(one.t * 1e9).astype(np.int64))
     points = np.array(rows)[:, 0]
     np.testing.assert_allclose(points, np.stack([one.x, -one.y], 1) * 1e6, rtol=2e-7, atol=0)
     turns, _ = column(file, f"/orbit/{name}/journal_um", "Points2D:positions", "milli-revolutions")
@@ -202,7 +193,7 @@ def test_isothermal_film_has_no_temperature_picture(written):
 
 
 def test_a_recording_of_orbits_only_and_an_empty_one(tmp_path):
-    write_recording(tmp_path / "a.rrd", RecordingContents("t", orbits=(track(),)))
+    write_recording(tmp_path / "a.rrd", RecordingContents("t", orbits=(orbit(),)))
     write_recording(tmp_path / "b.rrd", RecordingContents("t"))
     assert (tmp_path / "a.rrd").stat().st_size > (tmp_path / "b.rrd").stat().st_size > 0
 
@@ -222,26 +213,28 @@ def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
 
 
 def test_film_frames_follow_the_speed_of_a_run_up():
-    rows, frames = frame_rows(track(speed=(100.0, 1000.0)), np.array([100.0, 400.0, 900.0]))
+    rows, frames = frame_rows(
+        Run("thd", orbit(speed=(100.0, 1000.0))), np.array([100.0, 400.0, 900.0])
+    )
     assert frames.tolist() == [0, 1, 2]
     assert np.interp(rows, [0, 3000], [100.0, 1000.0]) == pytest.approx([100, 250, 650], abs=1)
 
 
 def test_display_grid_reproduces_a_smooth_field():
     shown = film()
-    grid = surfaces.display_grid(shown)
+    angles, _ = surfaces.display_grid(shown)
     values = np.cos(shown.theta)[:, None] + 0 * shown.y
     found = surfaces.on_display_grid(shown, values, at_ends=None)
-    assert np.abs(found - np.cos(grid.theta)[:, None]).max() < 2e-3
+    assert np.abs(found - np.cos(angles)[:, None]).max() < 2e-3
     assert np.array_equal(found[0], found[-1])
     ends = surfaces.on_display_grid(shown, shown.pressure, at_ends=0.0)
     assert np.all(ends[:, [0, -1]] == 0.0)
 
 
 def test_whirl_ratio_of_a_known_whirl():
-    forward = whirl_ratio(track(whirl=0.48))
+    forward = whirl_ratio(orbit(whirl=0.48))
     assert forward == pytest.approx(0.48, abs=1e-9)
-    assert whirl_ratio(track(whirl=-1.0)) == pytest.approx(-1.0, abs=1e-9)
+    assert whirl_ratio(orbit(whirl=-1.0)) == pytest.approx(-1.0, abs=1e-9)
 
 
 def test_envelope_keeps_the_extremes():
@@ -262,67 +255,91 @@ def test_thinning_keeps_the_end():
     assert rows.size <= 1001
 
 
-def test_classification():
-    verdict = classify([-1.0, -1.0, 1.0, 1.0, np.nan], [-1.0, 1.0, 1.0, -1.0, -1.0])
-    expected = [
-        Verdict.STABLE,
-        Verdict.HEATING_DESTABILISES,
-        Verdict.UNSTABLE,
-        Verdict.HEATING_STABILISES,
-        Verdict.UNKNOWN,
-    ]
-    assert verdict.tolist() == expected
-
-
-def test_map_pixels_stand_the_right_way_up():
-    picture = contents().maps[0]
-    pixels = verdict_pixels(picture)
-    corners = pixels[[-1, -1, 0, 0], [0, -1, 0, -1]]
-    assert corners.tolist() == picture.verdict[[0, -1, 0, -1], [0, 0, -1, -1]].tolist()
-    coarse = MapPicture("c", picture.speed, picture.mass, picture.verdict)
-    assert np.mean(verdict_pixels(coarse) == pixels) > 0.95
-    amplitude = np.arange(12.0)[:, None] * np.ones(9)
-    assert raster(amplitude, picture.speed, picture.mass)[0, -1] == 11.0
-
-
 def test_colour_scale_ends_and_unknown():
     found = colours([-1.0, 0.0, 1.0, 2.0, np.nan], 0.0, 1.0)
     assert found[0].tolist() == found[1].tolist() == [0x44, 0x01, 0x54, 255]
-    assert found[2].tolist() == found[3].tolist() == [0xFD, 0xE7, 0x25, 255]
+    assert found[2].tolist() == found[3].tolist() == [0xFD, 0xE7, 0x24, 255]
     assert found[4].tolist() == [128, 128, 128, 255]
 
 
-def test_ticks_are_round():
-    assert nice_ticks(0.0, 15000.0, 4).tolist() == [0.0, 5000.0, 10000.0, 15000.0]
+def pixels(file, entity):
+    """Picture that stands still under `entity`, (rows, columns, 3)."""
+    (chunk,) = RrdReader(file).stream().filter(content=[f"/{entity}/picture"]).to_chunks()
+    batch = chunk.to_record_batch()
+    name = next(n for n in batch.schema.names if n.endswith("EncodedImage:blob"))
+    blob = bytes(batch.column(name).to_pylist()[0][0])
+    with Image.open(io.BytesIO(blob)) as image:
+        return np.asarray(image.convert("RGB")).astype(int)
 
 
-@pytest.mark.parametrize("key", ["x", "speed", "force"])
-def test_lengths_that_differ_are_named(key):
-    good = track()
-    values = {**good.__dict__, key: getattr(good, key)[:-1]}
-    with pytest.raises(InputError, match=key):
-        OrbitTrack(**values)
+def test_the_rotors_point_moves_over_the_map_to_the_verdict_it_has_there(written):
+    file, what = written
+    picture = pixels(file, "map/0")
+    rpm, rows = column(file, "/map/0/operating_point/isothermal", "Points2D:positions", "speed_rpm")
+    speed = np.array(rpm) * np.pi / 30
+    points = np.array(rows)[:, 0]
+    assert np.all(np.diff(points[:, 0]) > 0.0)
+    # Within the axes and not on a border, the picture's colour is the verdict.
+    thd = 0.23 * speed + 0.2 * 300.0 - 300.0
+    cold = 0.15 * speed + 0.2 * 300.0 - 300.0
+    verdicts = {"stable": (232, 241, 248), "unstable": (140, 74, 95)}
+    seen = set()
+    for (x, y), hot, mild in zip(points[1:-1], thd[1:-1], cold[1:-1], strict=True):
+        name = "stable" if hot < -20.0 else "unstable" if mild > 20.0 else None
+        if name is not None:
+            seen.add(name)
+            assert np.abs(picture[round(y), round(x)] - verdicts[name]).max() < 6
+    assert "stable" in seen
+    _, words = column(
+        file, "/map/0/operating_point/isothermal/words", "Points2D:labels", "speed_rpm"
+    )
+    assert words[0] == ["955 rpm, 300 kg"]
+    assert what.map_charts[0].name == "Stability map: rigid rotor"
+
+
+def test_eigenvalues_move_along_their_branch_and_turn_red_at_the_threshold(written):
+    file, what = written
+    chart = what.eigenvalue_chart
+    curve = what.modes[1]
+    entity = "/eigenvalues/thd/now_per_s/thd"
+    rpm, rows = column(file, entity, "Points2D:positions", "speed_rpm")
+    assert len(rpm) == curve.branches.parameter.size
+    upper = curve.branches.eigenvalues[:, 0]
+    shown = chart.inside(upper.real, upper.imag)
+    for row, value, inside in zip(rows, upper, shown, strict=True):
+        assert len(row) == inside
+        if inside:
+            np.testing.assert_allclose(row[0], chart.place(value.real, value.imag), atol=0.01)
+    _, paint = column(file, entity, "Points2D:colors", "speed_rpm")
+    red = [bool(one) and one[0] >> 24 == 255 for one in paint]
+    assert red == [bool(i and v.real > 0) for i, v in zip(shown, upper, strict=True)]
+    # In time the point stands where the run's speed puts it.
+    _, now = column(file, entity, "Points2D:positions")
+    value = eigenvalues_at(curve, np.array([800.0]))[0, 0]
+    np.testing.assert_allclose(now[0][0], chart.place(value.real, value.imag), atol=0.01)
+
+
+def test_a_films_caption_tells_the_mean_from_the_hottest_place(written):
+    _, said = column(
+        written[0], "/bearing/thd/temperature/wrapped/frame", "Points3D:labels", "speed_rpm"
+    )
+    assert said[0] == ["7 639 rpm, max 59.9 °C (mean)\nhottest place 80 °C"]
 
 
 def test_viewer_without_display_or_file(tmp_path, monkeypatch):
     with pytest.raises(InputError, match=r"no such recording"):
-        open_viewer(tmp_path / "none.rrd")
+        viewer.open_viewer(tmp_path / "none.rrd")
     file = tmp_path / "a.rrd"
     file.write_bytes(b"")
     monkeypatch.setattr(viewer, "has_display", lambda: False)
-    launch = open_viewer(file)
+    launch = viewer.open_viewer(file)
     assert not launch.started
     assert launch.exit_code == 1
     assert "no display" in launch.message
 
 
-def test_importing_the_recording_leaves_rerun_alone():
-    code = "import sys, rotorsim.show.recording; assert 'rerun' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True, env=dict(os.environ))
-
-
 def test_half_a_million_samples_take_seconds(tmp_path):
-    long = track(count=500_001)
+    long = orbit(count=500_001)
     start = time.perf_counter()
     file = write_recording(tmp_path / "long.rrd", RecordingContents("t", orbits=(long,)))
     assert time.perf_counter() - start < 10.0

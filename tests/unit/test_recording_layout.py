@@ -7,53 +7,40 @@ import dataclasses
 import numpy as np
 import pytest
 from rerun.chunk import RrdReader
+from sample_results import CLEARANCE as C
+from sample_results import orbit_of
 
 from rotorsim.model.orbit import OrbitKind
-from rotorsim.show.recording import (
-    CascadePicture,
-    FilmSurface,
-    OrbitTrack,
-    RecordingContents,
-    SpectrumPicture,
-    write_recording,
-)
-from rotorsim.show.recording.film_view import changing
-from rotorsim.show.recording.quantities import quantities
-from rotorsim.show.recording.series_view import whirl_ratio
-from rotorsim.show.recording.timeline import distinct_speeds
+from rotorsim.orbit import Orbit
+from rotorsim.show.recording import RecordingContents, write_recording
+from rotorsim.show.recording.film_view import changing, quantities
+from rotorsim.show.recording.runs import Run, distinct_speeds
+from rotorsim.show.recording.series_view import MINIMUM_FILM, whirl_ratio
+from rotorsim.study.film_motion import FilmFrame
 
-C = 1e-4
 COUNT = 801
 
 
-def track(top: float = 800.0, **more) -> OrbitTrack:
+def orbit(top: float = 800.0, **more) -> Orbit:
     t = np.linspace(0.0, 0.2, COUNT)
     speed = np.linspace(800.0, top, COUNT)
     angle = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(t))])
     x, y = 3e-5 + 2e-5 * np.cos(0.5 * angle), 4e-5 + 2e-5 * np.sin(0.5 * angle)
-    return OrbitTrack("isothermal", t, x, y, angle, speed, C, np.array([3e-5, 4e-5]), **more)
+    given = {"thermal_model": "isothermal", "equilibrium": (3e-5, 4e-5)}
+    return orbit_of(t, x, y, speed, samples_per_revolution=32, **{**given, **more})
 
 
-def film(time: float | None, peak: float = 1e6, temperature=None) -> FilmSurface:
+def film(time: float | None, peak: float = 1e6, temperature=None) -> FilmFrame:
     theta, y = (np.arange(40) + 0.5) * np.pi / 20, (np.arange(8) - 3.5) * 1e-2
     pressure = peak * np.clip(np.cos(theta), 0.0, None)[:, None] * (1.0 - (y / 0.04) ** 2)
-    return FilmSurface(
-        "isothermal", 800.0, theta, y, pressure, temperature, 0.05, C, np.zeros(2), time
+    return FilmFrame(
+        "isothermal", 800.0, theta, y, pressure, temperature, None, 0.05, C, np.zeros(2), time
     )
 
 
-def contents(kind: str, orbit: OrbitTrack) -> RecordingContents:
-    frequency = np.linspace(0.0, 2000.0, 50)
-    passing = not orbit.constant_speed
-    cascade = CascadePicture("", np.array([800.0, 900.0]), frequency, np.full((2, 50), 1e-6))
-    spectrum = SpectrumPicture("isothermal", 800.0, frequency, np.full(50, 1e-6))
+def contents(kind: str, one: Orbit) -> RecordingContents:
     return RecordingContents(
-        "test",
-        kind=kind,
-        orbits=(orbit,),
-        films=(film(None), film(0.0), film(0.1)),
-        cascades=(cascade,) if passing else (),
-        spectra=() if passing else (spectrum,),
+        "test", kind=kind, orbits=(one,), films=(film(None), film(0.0), film(0.1))
     )
 
 
@@ -80,7 +67,7 @@ def overview(path) -> set[str]:
 
 
 ALWAYS = {"Orbit", "What is seen", "Film pressure [MPa]"}
-DISPLACEMENT, MINIMUM_FILM = "Displacement x, y [µm]", "Minimum film thickness [µm]"
+DISPLACEMENT, THINNEST = "Displacement x, y [µm]", "Minimum film thickness [µm]"
 LOAD, ACTUATOR = "Load on the rotor x, y [N]", "Actuator force x, y [N]"
 WHIRL, SPECTRUM = "Whirl frequency / shaft frequency [-]", "Spectrum of the motion"
 
@@ -90,18 +77,18 @@ WHIRL, SPECTRUM = "Whirl frequency / shaft frequency [-]", "Spectrum of the moti
     [
         ("", {"Eccentricity ratio [-]"}, {WHIRL, LOAD}),
         ("free_decay", {"Eccentricity ratio [-]", WHIRL}, {LOAD, SPECTRUM}),
-        ("unbalance", {DISPLACEMENT, MINIMUM_FILM, SPECTRUM}, {LOAD, WHIRL}),
+        ("unbalance", {DISPLACEMENT, THINNEST, SPECTRUM}, {LOAD, WHIRL}),
         ("harmonic", {LOAD, DISPLACEMENT, SPECTRUM}, {WHIRL}),
-        ("step", {LOAD, DISPLACEMENT, MINIMUM_FILM}, {SPECTRUM, WHIRL}),
-        ("base_motion", {LOAD, DISPLACEMENT, MINIMUM_FILM}, {SPECTRUM, WHIRL}),
+        ("step", {LOAD, DISPLACEMENT, THINNEST}, {SPECTRUM, WHIRL}),
+        ("base_motion", {LOAD, DISPLACEMENT, THINNEST}, {SPECTRUM, WHIRL}),
         ("run_up", {DISPLACEMENT, "Shaft speed [rpm]", WHIRL, "Spectrum cascade"}, {LOAD}),
         ("coast_down", {DISPLACEMENT, "Shaft speed [rpm]", WHIRL, "Spectrum cascade"}, {LOAD}),
     ],
 )
 def test_each_kind_opens_with_what_it_is_about(tmp_path, kind, shown, hidden):
     load = np.full((COUNT, 2), 5.0)
-    orbit = track(1200.0) if kind in ("run_up", "coast_down") else track(load=load)
-    found = overview(write_recording(tmp_path / "a.rrd", contents(kind, orbit)))
+    one = orbit(1600.0) if kind in ("run_up", "coast_down") else orbit(load=load)
+    found = overview(write_recording(tmp_path / "a.rrd", contents(kind, one)))
     assert found >= ALWAYS | shown
     assert not found & hidden
 
@@ -113,14 +100,14 @@ def test_every_kind_of_orbit_is_among_them():
 
 
 def test_an_actuator_is_shown_where_there_is_one(tmp_path):
-    plain, held = track(), track(actuator_force=np.full((COUNT, 2), 3.0))
-    for orbit, there in ((plain, False), (held, True)):
-        found = overview(write_recording(tmp_path / "a.rrd", contents("free_decay", orbit)))
+    plain, held = orbit(), orbit(actuator_force=np.full((COUNT, 2), 3.0))
+    for one, there in ((plain, False), (held, True)):
+        found = overview(write_recording(tmp_path / "a.rrd", contents("free_decay", one)))
         assert (ACTUATOR in found) == there
 
 
 def test_the_film_follows_the_run_in_time(tmp_path):
-    path = write_recording(tmp_path / "a.rrd", contents("free_decay", track()))
+    path = write_recording(tmp_path / "a.rrd", contents("free_decay", orbit()))
     times: dict[str, list[int]] = {"time": [], "milli-revolutions": [], "speed_rpm": []}
     entity = "/bearing/isothermal/pressure/wrapped/pressure_MPa"
     for chunk in RrdReader(path).stream().filter(content=[entity]):
@@ -148,8 +135,8 @@ def test_a_temperature_that_is_kept_is_written_once():
 
 
 def test_whirl_ratio_needs_no_centre_and_knows_rest():
-    moving = track()
-    drift = dataclasses.replace(moving, x=moving.x + 1e-5 * moving.time / 0.2)
+    moving = orbit()
+    drift = dataclasses.replace(moving, x=moving.x + 1e-5 * moving.t / 0.2)
     assert whirl_ratio(drift) == pytest.approx(0.5, abs=0.01)
     still = dataclasses.replace(moving, x=np.full(COUNT, 3e-5), y=np.full(COUNT, 4e-5))
     assert np.isnan(whirl_ratio(still)).all()
@@ -157,19 +144,18 @@ def test_whirl_ratio_needs_no_centre_and_knows_rest():
 
 def test_the_line_of_contact_and_the_film_are_the_bearings_own():
     square = C * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [1.0, 1.0]])
-    own = track(boundary=square, minimum_film=np.full(COUNT, 2e-5))
-    assert own.reach == pytest.approx(2.0**0.5 * C)
-    assert own.thinnest_film[0] == 2e-5
-    assert track().reach == pytest.approx(C)
-    assert track().thinnest_film == pytest.approx(C - np.hypot(track().x, track().y))
+    own = orbit(boundary=square, min_film=np.full(COUNT, 2e-5))
+    assert Run("a", own).reach == pytest.approx(2.0**0.5 * C)
+    assert MINIMUM_FILM.values(own)[0] == pytest.approx(20.0)
+    assert Run("a", orbit()).reach == pytest.approx(C)
 
 
 def test_one_point_stands_for_runs_that_turn_alike():
-    up = track(1200.0)
-    touched = OrbitTrack(
-        "thd_run_up", up.time[:300], up.x[:300], up.y[:300], up.angle[:300], up.speed[:300], C
-    )
-    faster = track(1600.0)
-    shown = [found for found, _ in distinct_speeds([touched, up, faster, track(), track()])]
-    assert [one.speed[-1] for one in shown] == [800.0, 1200.0, 1600.0]
-    assert shown[1].time.size == COUNT
+    up = orbit(1200.0)
+    runs = [
+        Run(str(number), one)
+        for number, one in enumerate((up.part(0, 300), up, orbit(1600.0), orbit(), orbit()))
+    ]
+    shown = [found for found, _ in distinct_speeds(runs)]
+    assert [one.orbit.speed[-1] for one in shown] == [800.0, 1200.0, 1600.0]
+    assert shown[1].samples == COUNT

@@ -9,17 +9,18 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+from sample_results import orbit_of
 from scenario_texts import BEARING, CONSTANT_OIL
 
 from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.files.scenario import Scenario
 from rotorsim.film.heat import HeatBalance
 from rotorsim.machine.map import stability_map
-from rotorsim.orbit import Orbit, OrbitStatus
-from rotorsim.show.main_job import Results
+from rotorsim.orbit import Orbit
 from rotorsim.show.report import html, report_page, write_report
 from rotorsim.show.report.results import log_decrement
 from rotorsim.status import SolveStatus
+from rotorsim.study.main_job import Results
 from rotorsim.study.stability import stability_curves
 from rotorsim.study.sweep import as_table, sweep_points
 
@@ -216,8 +217,8 @@ def test_long_figures_become_pixels():
 
     x = np.cos(np.linspace(0.0, 99.0, 40_000)) * 1e-5 * np.linspace(0.1, 1.0, 40_000)
     noisy = x + 1e-6 * np.random.default_rng(1).normal(size=x.size)
-    few = [plots.OrbitPicture("thd", "", x[:50], noisy[:50], 1e-4)]
-    many = [plots.OrbitPicture("thd", "", x, noisy, 1e-4)]
+    t = np.linspace(0.0, 2.0, x.size)
+    few, many = ([orbit_of(t[:n], x[:n], noisy[:n], 800.0)] for n in (50, x.size))
     assert "data:image/svg+xml" in html.figure(plots.orbit_plot(few), "a")
     assert "data:image/png" in html.figure(plots.orbit_plot(many), "a")
 
@@ -225,15 +226,7 @@ def test_long_figures_become_pixels():
 def orbit() -> Orbit:
     t = np.linspace(0.0, 0.1, 1281)
     angle = 2.0 * np.pi * 200.0 * t
-    x, y = 1e-5 * np.cos(angle), 1e-5 * np.sin(angle)
-    zero = np.zeros_like(t)
-    return Orbit(
-        t=t, x=x, y=y, vx=zero, vy=zero, speed=np.full_like(t, 400.0 * np.pi), angle=angle,
-        fx=zero, fy=zero, load=np.zeros((t.size, 2)), actuator_force=np.zeros((t.size, 2)),
-        boundary=1e-4 * np.eye(2), displacements=np.column_stack([x, y]), samples_per_revolution=64,
-        radial_clearance=1e-4, equilibrium=(0.0, 0.0), force_model="linear", thermal_model="thd",
-        min_film=1e-4 - np.hypot(x, y), status=OrbitStatus.COMPLETED,
-    )  # fmt: skip
+    return orbit_of(t, 1e-5 * np.cos(angle), 1e-5 * np.sin(angle), 400.0 * np.pi)
 
 
 def test_results_show_themselves_in_notebooks(results, points):

@@ -11,19 +11,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from PIL import Image
+from sample_results import campbell_of, chart_of, orbit_of
 from scipy.linalg import expm
 
-from rotorsim.show.recording import (
-    EigenvaluePath,
-    FilmSurface,
-    MapPicture,
-    OrbitTrack,
-    RecordingContents,
-    classify,
-    write_recording,
-)
-from rotorsim.show.recording.viewer import viewer_program
+from rotorsim.orbit import Orbit
+from rotorsim.show.recording import RecordingContents, write_recording
+from rotorsim.show.viewer import viewer_program
+from rotorsim.study.film_motion import FilmFrame
 
 R, L, C, MU, ECC = 0.05, 0.08, 100e-6, 0.0277, 0.5
 PHI = np.arctan2(np.pi * np.sqrt(1 - ECC**2), 4 * ECC)
@@ -84,7 +80,7 @@ def eigenvalues(model: str, mass: float) -> np.ndarray:
     return np.array(rows)
 
 
-def track(model: str, speed: float, revolutions: float = 60.0, per_turn: int = 100) -> OrbitTrack:
+def orbit(model: str, speed: float, revolutions: float = 60.0, per_turn: int = 100) -> Orbit:
     count = int(revolutions * per_turn) + 1
     t = np.linspace(0.0, revolutions * 2 * np.pi / speed, count)
     step = expm(system(model, speed, MASS) * (t[1] - t[0]))
@@ -95,21 +91,14 @@ def track(model: str, speed: float, revolutions: float = 60.0, per_turn: int = 1
         state = step @ state
     k, c = coefficients(model, speed)
     force = -(states[:, :2] @ k.T + states[:, 2:] @ c.T) - np.array([load(model, speed), 0.0])
-    return OrbitTrack(
-        name=model,
-        time=t,
-        x=CENTRE[0] + states[:, 0],
-        y=CENTRE[1] + states[:, 1],
-        angle=speed * t,
-        speed=np.full(count, speed),
-        radial_clearance=C,
-        equilibrium=CENTRE,
-        force=force,
-        title={"isothermal": "heating neglected", "thd": "with heating (THD)"}[model],
-    )
+    return orbit_of(
+        t, CENTRE[0] + states[:, 0], CENTRE[1] + states[:, 1], speed, radial_clearance=C,
+        thermal_model=model, equilibrium=(float(CENTRE[0]), float(CENTRE[1])), fx=force[:, 0],
+        fy=force[:, 1], samples_per_revolution=per_turn,
+    )  # fmt: skip
 
 
-def film(model: str, speed: float) -> FilmSurface:
+def film(model: str, speed: float) -> FilmFrame:
     n, m = 156, 48
     theta = PHI + np.pi + (np.arange(n) + 0.5) * 2 * np.pi / n
     y = (np.arange(m) + 0.5) * L / m - L / 2
@@ -119,40 +108,39 @@ def film(model: str, speed: float) -> FilmSurface:
     pressure = 3 * mu * speed / C**2 * wave[:, None] * (L**2 / 4 - y**2)
     rise = 45.0 * speed / SPEEDS[-1] * np.where(a < 3.6, np.sin(a / 2.3) ** 2, 0.35)
     temperature = 313.15 + rise[:, None] * (1 - 0.3 * (2 * y / L) ** 2)
-    return FilmSurface(
-        model, speed, theta, y, pressure, temperature if model == "thd" else None, R, C, CENTRE
-    )
+    warm = model == "thd"
+    return FilmFrame(
+        model, speed, theta, y, pressure, temperature if warm else None,
+        float(temperature.max()) + 5.0 if warm else None, R, C, CENTRE,
+    )  # fmt: skip
 
 
-def stability_picture() -> MapPicture:
-    speeds, mass = SPEEDS, np.linspace(50, 12000, 60)
+def stability_chart() -> xr.Dataset:
+    mass = np.linspace(50, 12000, 60)
     growth = {
         model: np.array(
-            [[np.linalg.eigvals(system(model, s, m)).real.max() for m in mass] for s in speeds]
+            [[np.linalg.eigvals(system(model, s, m)).real.max() for m in mass] for s in SPEEDS]
         )
         for model in MODELS
     }
-    verdict = classify(growth["isothermal"], growth["thd"])
-    return MapPicture(
-        "c = 100 µm", speeds, mass, verdict, MASS, growth["isothermal"], growth["thd"]
-    )
+    return chart_of(SPEEDS, mass, growth, ("speed", "mass"))
 
 
 def sample_contents() -> RecordingContents:
     speed = 10000 * np.pi / 30
-    paths = []
+    curves = []
     for model in MODELS:
         values = eigenvalues(model, MASS)
         growth = values.real.max(axis=1)
         crossing = np.flatnonzero((growth[:-1] < 0) & (growth[1:] >= 0))
-        at = ratio = None
+        thresholds = ()
         if crossing.size:
             i = crossing[0]
             weight = -growth[i] / (growth[i + 1] - growth[i])
             at = float(SPEEDS[i] + weight * (SPEEDS[i + 1] - SPEEDS[i]))
             now = values[i][values[i].real.argmax()]
-            ratio = float(abs(now.imag) / at)
-        paths.append(EigenvaluePath(model, SPEEDS, values, at, ratio))
+            thresholds = ((at, float(abs(now.imag))),)
+        curves.append(campbell_of(SPEEDS, values, model, thresholds=thresholds))
     return RecordingContents(
         title="Short bearing: heating decides",
         summary=(
@@ -161,10 +149,11 @@ def sample_contents() -> RecordingContents:
             "| isothermal | -3.1 1/s | decays |\n| THD | +4.2 1/s | **grows** |\n\n"
             "Neglecting the oil's heating calls this rotor stable. It is not.\n"
         ),
-        orbits=tuple(track(model, speed) for model in MODELS),
+        orbits=tuple(orbit(model, speed) for model in MODELS),
         films=tuple(film(model, s) for model in MODELS for s in SPEEDS),
-        eigenvalues=tuple(paths),
-        maps=(stability_picture(),),
+        modes=tuple(curves),
+        maps=(stability_chart(),),
+        rotor_mass=MASS,
     )
 
 

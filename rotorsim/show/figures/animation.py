@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib as mpl
@@ -16,11 +15,12 @@ from numpy.typing import NDArray
 
 from ...atomic import replacing
 from ...errors import InputError
+from ...orbit import Orbit
+from ...orbit.description import run_names, run_title
+from ...rows import RPM
 from ...text import caption
-from .motion import draw_contact
-from .style import MICRO, RPM, SETTINGS, model_style, new_axes
-
-Array = NDArray[np.float64]
+from .orbits import draw_contact
+from .style import MICRO, SETTINGS, model_style, new_axes
 
 FRAMES_PER_SECOND = 12
 RUN_FRAMES = 50
@@ -33,43 +33,8 @@ FORCE_LENGTH = 0.45
 PATH_POINTS = 4000
 
 
-@dataclass(frozen=True)
-class MovingOrbit:
-    """One run to be shown.
-
-    Attributes
-    ----------
-    name, title : str
-        Thermal model; words above the picture.
-    time, revolutions, speed : (n,) arrays
-        [s], [-], [rad/s]
-    x, y : (n,) arrays
-        Journal centre from the bearing's centre [m].
-    force : (n, 2) array
-        Film force on the journal [N].
-    radial_clearance : float
-        [m]
-    equilibrium : (2,) array
-        [m]
-    boundary : (m, 2) array, optional
-        Closed line on which journal and bush touch [m]. Default: the clearance circle.
-    """
-
-    name: str
-    title: str
-    time: Array
-    revolutions: Array
-    speed: Array
-    x: Array
-    y: Array
-    force: Array
-    radial_clearance: float
-    equilibrium: Array
-    boundary: Array | None = None
-
-
 def animate_orbits(
-    orbits: Sequence[MovingOrbit], path: str | Path, title: str = "", slow_only: bool = False
+    orbits: Sequence[Orbit], path: str | Path, title: str = "", slow_only: bool = False
 ) -> Path:
     """Write runs side by side as ``.gif`` or ``.mp4``.
 
@@ -78,7 +43,7 @@ def animate_orbits(
 
     Parameters
     ----------
-    orbits : sequence of MovingOrbit
+    orbits : sequence of Orbit
     path : str or Path
         Its suffix decides the format.
     slow_only : bool
@@ -95,7 +60,10 @@ def animate_orbits(
         2, len(orbits), (4.4 * len(orbits) + 0.4, 6.4), title, height_ratios=(3, 1)
     )
     with mpl.rc_context(SETTINGS):
-        scenes = [_Scene(axes[0, k], axes[1, k], orbit) for k, orbit in enumerate(orbits)]
+        named = zip(orbits, run_names(orbits), strict=True)
+        scenes = [
+            _Scene(axes[0, k], axes[1, k], orbit, name) for k, (orbit, name) in enumerate(named)
+        ]
         # Laid out once: doing it anew for every picture takes most of the time.
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
@@ -130,21 +98,22 @@ def _writer(target: Path) -> AbstractMovieWriter:
 class _Scene:
     """One run's pictures: the clearance circle above, displacement over turns below."""
 
-    def __init__(self, above: Axes, below: Axes, orbit: MovingOrbit) -> None:
-        self.orbit = orbit
+    def __init__(self, above: Axes, below: Axes, orbit: Orbit, name: str) -> None:
+        self.orbit, self.title = orbit, run_title(name)
         self.x, self.y = orbit.x * MICRO, orbit.y * MICRO
-        self.colour = model_style(orbit.name)["color"]
-        size = np.hypot(orbit.force[:, 0], orbit.force[:, 1])
+        self.colour = model_style(orbit.thermal_model)["color"]
+        force = np.column_stack([orbit.fx, orbit.fy])
+        size = np.hypot(*force.T)
         middle = max(float(np.median(size)), 1e-30)
         limit = np.minimum(1.0, 2.0 * middle / np.maximum(size, 1e-30))
         scale = FORCE_LENGTH * orbit.radial_clearance * MICRO / middle
-        self.arrows = orbit.force * (limit * scale)[:, None]
+        self.arrows = force * (limit * scale)[:, None]
         self._above(above)
         self._below(below)
 
     def frames(self, slow_only: bool) -> NDArray[np.intp]:
         """Sample shown in each frame."""
-        count = self.orbit.time.size
+        count = self.orbit.t.size
         turns = SLOW_FRAMES / SLOW_FRAMES_PER_REVOLUTION
         first = max(float(self.orbit.revolutions[-1]) - turns, float(self.orbit.revolutions[0]))
         wanted = np.linspace(first, float(self.orbit.revolutions[-1]), SLOW_FRAMES)
@@ -178,16 +147,16 @@ class _Scene:
             self.below.set_xlim(float(turns[frames[-SLOW_FRAMES]]), float(turns[-1]))
         pace = "" if act_one else ", slow motion"
         self.words.set_text(
-            f"turn {turns[at]:.1f}, {self.orbit.time[at]:.3f} s, "
+            f"turn {turns[at]:.1f}, {self.orbit.t[at]:.3f} s, "
             f"{self.orbit.speed[at] * RPM:.0f} rpm{pace}"
         )
 
     def _above(self, ax: Axes) -> None:
         clearance = self.orbit.radial_clearance * MICRO
-        reach = draw_contact(ax, self.orbit.boundary, self.orbit.radial_clearance)
+        reach = draw_contact(ax, self.orbit)
         (self.past,) = ax.plot([], [], color="0.8", linewidth=0.6)
         (self.trail,) = ax.plot([], [], color=self.colour, linewidth=1.3)
-        ax.plot(*(self.orbit.equilibrium * MICRO), "+", color="k", ms=8)
+        ax.plot(*(np.asarray(self.orbit.equilibrium) * MICRO), "+", color="k", ms=8)
         self.force = FancyArrowPatch(
             (0.0, 0.0), (1.0, 0.0), arrowstyle="-|>", mutation_scale=9, color="#009E73", lw=1.2
         )
@@ -199,7 +168,7 @@ class _Scene:
         ax.set(xlabel="x (along the load) [µm]", ylabel="y [µm]")
         self.words = ax.set_title("turn")
         ax.text(
-            0.02, 0.98, f"{caption(self.orbit.title)}\nc = {clearance:.4g} µm",
+            0.02, 0.98, f"{caption(self.title)}\nc = {clearance:.4g} µm",
             transform=ax.transAxes, va="top", fontsize=8,
         )  # fmt: skip
         ax.plot([], [], color="#009E73", label="film force")

@@ -1,87 +1,29 @@
-"""Where the machine is stable: the map, the eigenvalues over speed, the Campbell diagram."""
+"""Eigenvalues over speed, Campbell diagrams, root loci, and what tolerances do to thresholds."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from ...machine.branches import FORWARD, Modes
+from ...machine.thresholds import ThresholdSpeed
+from ...rows import RPM
+from ...study.stability import Campbell
+from ...study.tolerances import ToleranceStudy
 from ...text import caption
-from .regions import PlaneAxis, stability_plane
-from .style import MARKERS, RPM, axes_or_new, figure_of, model_label, model_style
+from .style import MARKERS, axes_or_new, figure_of, model_label, model_style, new_axes
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class EigenvalueCurve:
-    """Eigenvalues over speed, each column one continuous branch.
-
-    Attributes
-    ----------
-    name : str
-    speed : (n,) array
-        [rad/s]
-    eigenvalues : (n, k) complex array
-        [1/s]
-    sense : (n, k) array or None
-        Sense of whirl: above 0 with the shaft, below 0 against it.
-    thresholds : sequence of (speed, whirl frequency)
-        Where the verdict changes [rad/s].
-    """
-
-    name: str
-    speed: Array
-    eigenvalues: NDArray[np.complex128]
-    sense: Array | None = None
-    thresholds: Sequence[tuple[float, float]] = ()
-
-
-def stability_map(
-    speed: Array,
-    mass: Array,
-    isothermal_growth: Array,
-    heated_growth: Array | None = None,
-    operating_point: tuple[float, float] | None = None,
-    title: str = "",
-    ax: Axes | None = None,
-) -> Figure:
-    """Speed-mass plane: stable, unstable, and what only heating makes unstable.
-
-    Parameters
-    ----------
-    speed : (n,) array
-        [rad/s]
-    mass : (m,) array
-        Per bearing [kg].
-    isothermal_growth, heated_growth : (n, m) arrays
-        Growth rates, positive where unstable, NaN where unknown [1/s]. With one of them only, the
-        map knows stable and unstable.
-    operating_point : (speed, mass), optional
-        Marked by a star [rad/s, kg].
-    """
-    return stability_plane(
-        PlaneAxis("shaft speed [rpm]", speed * RPM),
-        PlaneAxis("rotor mass per bearing [kg]", mass),
-        isothermal_growth,
-        heated_growth,
-        None if operating_point is None else (operating_point[0] * RPM, operating_point[1]),
-        title,
-        ax,
-        border="critical mass",
-    )
-
-
-def eigenvalue_plot(
-    curves: Sequence[EigenvalueCurve], title: str = "", ax: Axes | None = None
-) -> Figure:
+def eigenvalue_plot(curves: Sequence[Campbell], title: str = "", ax: Axes | None = None) -> Figure:
     """Upper half of the complex plane: branches over speed, open at first, filled at last."""
     ax = axes_or_new(ax, (6.2, 4.6))
-    every = [curve.eigenvalues[np.isfinite(curve.eigenvalues)] for curve in curves]
+    every = [values[np.isfinite(values)] for values in (c.branches.eigenvalues for c in curves)]
     highest = max(float(np.abs(values.imag).max(initial=1e-3)) for values in every)
     right = max(float(values.real.max(initial=0.0)) for values in every)
     ax.axvspan(0.0, max(1.4 * right, 0.12 * highest), color="#f2d7d9", zorder=0)
@@ -91,19 +33,22 @@ def eigenvalue_plot(
         rotation=90,
     )  # fmt: skip
     for number, curve in enumerate(curves):
-        look = model_style(curve.name)
-        for k, branch in enumerate(curve.eigenvalues.T):
+        model = curve.choices["thermal_model"]
+        look = model_style(model)
+        for k, branch in enumerate(curve.branches.eigenvalues.T):
             shown = branch.imag >= 0.0
             real = np.where(shown, branch.real, np.nan)
             imaginary = np.where(shown, branch.imag, np.nan)
-            label = model_label(curve.name) if k == 0 else None
+            label = _threshold_label(curve) if k == 0 else None
             ax.plot(real, imaginary, **look, label=label)
             ax.plot(real[-1], imaginary[-1], MARKERS[number], color=look["color"])
             ax.plot(real[:1], imaginary[:1], MARKERS[number], color=look["color"], mfc="w")
+        for one in curve.thresholds[:1]:
+            ax.plot(0.0, one.whirl_frequency, "x", color="#8c1d2f", ms=8, mew=2, zorder=6)
     left = max(min(float(values.real.min(initial=0.0)) for values in every), -highest)
     ax.set_xlim(1.08 * min(left, -0.2 * highest), max(1.4 * right, 0.12 * highest))
     ax.set_ylim(0.0, 1.08 * highest)
-    low, high = curves[0].speed[0] * RPM, curves[0].speed[-1] * RPM
+    low, high = curves[0].branches.parameter[[0, -1]] * RPM
     for speed, face in ((low, "w"), (high, "k")):
         ax.plot([], [], MARKERS[0], color="k", mfc=face, ls="", label=f"at {speed:.0f} rpm")
     ax.set(
@@ -114,14 +59,25 @@ def eigenvalue_plot(
     figure = figure_of(ax)
     if len(figure.axes) == 1:
         # Below: within the axes it would cover eigenvalues.
-        figure.legend(loc="outside lower center", ncols=len(curves) + 2)
+        figure.legend(loc="outside lower center", ncols=2)
     else:
         ax.legend(loc="best")
     return figure
 
 
+def _threshold_label(curve: Campbell) -> str:
+    """Model, and at which speed the first of its modes turns unstable."""
+    label = model_label(curve.choices["thermal_model"])
+    if not curve.thresholds:
+        return label
+    first = curve.thresholds[0]
+    said = f"{label}: threshold {first.speed * RPM:.0f} rpm"
+    ratio = first.whirl_frequency_ratio
+    return said if ratio is None else f"{said}, whirl ratio {ratio:.3f}"
+
+
 def campbell_diagram(
-    curves: Sequence[EigenvalueCurve],
+    curves: Sequence[Campbell],
     orders: Sequence[float] = (1.0, 0.5),
     title: str = "",
     ax: Axes | None = None,
@@ -133,24 +89,26 @@ def campbell_diagram(
     ax = axes_or_new(ax, (6.2, 4.4))
     grows = False
     for curve in curves:
-        look = model_style(curve.name)
-        for k in range(curve.eigenvalues.shape[1]):
-            label = model_label(curve.name) if k == 0 else None
-            speed, values = _with_crossings(curve.speed, curve.eigenvalues[:, k], curve.thresholds)
+        model, branches = curve.choices["thermal_model"], curve.branches
+        look = model_style(model)
+        for k in range(branches.eigenvalues.shape[1]):
+            label = model_label(model) if k == 0 else None
+            speed, values = _with_crossings(
+                branches.parameter, branches.eigenvalues[:, k], curve.thresholds
+            )
             hertz = np.where(values.imag > 0.0, values.imag, np.nan) / (2 * np.pi)
             ax.plot(speed * RPM, hertz, **look, label=label)
             unstable = np.where(values.real >= 0.0, hertz, np.nan)
             grows = grows or bool(np.isfinite(unstable).any())
             ax.plot(speed * RPM, unstable, color=look["color"], linewidth=4.5, alpha=0.45)
-        hertz = np.where(curve.eigenvalues.imag > 0.0, curve.eigenvalues.imag, np.nan) / (2 * np.pi)
-        _mark_whirl(ax, curve, curve.speed * RPM, hertz)
-    ends = np.array([0.0, max(float(curve.speed[-1]) for curve in curves)])
+        _mark_whirl(ax, curve)
+    ends = np.array([0.0, max(float(curve.branches.parameter[-1]) for curve in curves)])
     for order in orders:
         ax.plot(ends * RPM, order * ends / (2 * np.pi), color="0.35", linewidth=0.8)
         place = (ends[1] * RPM, order * ends[1] / (2 * np.pi))
         ax.annotate(f"{order:g}x", place, xytext=(3, -3), textcoords="offset points", fontsize=8)
     for marker, text, sign in _SENSES:
-        if any(c.sense is not None and np.any(sign * c.sense > _CLEAR) for c in curves):
+        if any(np.any(sign * curve.branches.whirl_sense > FORWARD) for curve in curves):
             ax.plot([], [], marker, color="k", mfc="w", ms=5, ls="", label=text)
     if any(curve.thresholds for curve in curves):
         ax.plot([], [], "x", color="k", ms=8, mew=2, ls="", label="threshold")
@@ -163,7 +121,7 @@ def campbell_diagram(
 
 
 def _with_crossings(
-    speed: Array, branch: NDArray[np.complex128], thresholds: Sequence[tuple[float, float]]
+    speed: Array, branch: NDArray[np.complex128], thresholds: Sequence[ThresholdSpeed]
 ) -> tuple[Array, NDArray[np.complex128]]:
     """A branch with points where it turns unstable or back: growth begins there, not at a knot.
 
@@ -178,7 +136,8 @@ def _with_crossings(
             t = before.real / (before.real - value.real)
             at = float(speed[i - 1] + t * (speed[i] - speed[i - 1]))
             whirl = before.imag + t * (complex(value).imag - before.imag)
-            for place, frequency in thresholds:
+            for threshold in thresholds:
+                place, frequency = threshold.speed, threshold.whirl_frequency
                 inside = speed[i - 1] <= place <= speed[i]
                 if inside and abs(frequency - abs(whirl)) < 0.1 * abs(whirl):
                     at, whirl = place, frequency if whirl > 0.0 else -frequency
@@ -190,43 +149,36 @@ def _with_crossings(
 
 
 _SENSES = (("^", "whirls forward", 1.0), ("v", "whirls backward", -1.0))
-_CLEAR = 0.1
-"""Ratio of areas, orbit to circle, above which an orbit has a sense."""
 
 
-def _mark_whirl(ax: Axes, curve: EigenvalueCurve, rpm: Array, hertz: Array) -> None:
+def _mark_whirl(ax: Axes, curve: Campbell) -> None:
     """Triangles along the branches for the sense of whirl, crosses at the thresholds."""
-    colour = model_style(curve.name)["color"]
-    if curve.sense is not None:
-        step = max(1, rpm.size // 8)
-        shown = np.zeros(rpm.shape, dtype=bool)
-        shown[step // 2 :: step] = True
-        for marker, _, sign in _SENSES:
-            for k in range(hertz.shape[1]):
-                here = shown & (sign * curve.sense[:, k] > _CLEAR)
-                ax.plot(rpm[here], hertz[here, k], marker, color=colour, mfc="w", ms=5)
-    for speed, whirl in curve.thresholds:
-        ax.plot(speed * RPM, whirl / (2 * np.pi), "x", color="k", ms=8, mew=2, zorder=6)
+    colour = model_style(curve.choices["thermal_model"])["color"]
+    values, rpm = curve.branches.eigenvalues, curve.branches.parameter * RPM
+    hertz = np.where(values.imag > 0.0, values.imag, np.nan) / (2 * np.pi)
+    sense, step = curve.branches.whirl_sense, max(1, rpm.size // 8)
+    shown = np.zeros(rpm.shape, dtype=bool)
+    shown[step // 2 :: step] = True
+    for marker, _, sign in _SENSES:
+        for k in range(hertz.shape[1]):
+            here = shown & (sign * sense[:, k] > FORWARD)
+            ax.plot(rpm[here], hertz[here, k], marker, color=colour, mfc="w", ms=5)
+    for one in curve.thresholds:
+        place = (one.speed * RPM, one.whirl_frequency / (2 * np.pi))
+        ax.plot(*place, "x", color="k", ms=8, mew=2, zorder=6)
 
 
-def root_locus(
-    parameter: Array,
-    eigenvalues: NDArray[np.complex128],
-    quantity: str,
-    title: str = "",
-    ax: Axes | None = None,
-) -> Figure:
+def root_locus(branches: Modes, quantity: str, title: str = "", ax: Axes | None = None) -> Figure:
     """Eigenvalues over a parameter: open at its first value, filled at its last, numbers between.
 
     Parameters
     ----------
-    parameter : (n,) array
-        In the unit that `quantity` names.
-    eigenvalues : (n, k) complex array
-        Each column one continuous branch [1/s].
+    branches : Modes
+        Over a parameter in the unit that `quantity` names.
     quantity : str
         The parameter with its unit, for example ``"mass per bearing [kg]"``.
     """
+    parameter, eigenvalues = branches.parameter, branches.eigenvalues
     ax = axes_or_new(ax, (6.2, 4.8))
     upper = eigenvalues.imag >= -1e-9 * np.abs(eigenvalues)
     values = np.asarray(np.where(upper, eigenvalues, np.nan), dtype=complex)
@@ -302,3 +254,78 @@ def _number_branch(
             f"{parameter[i]:.3g}", (point.real, point.imag), xytext=(4, 3 if k % 2 == 0 else -9),
             textcoords="offset points", fontsize=7, color="0.25",
         )  # fmt: skip
+
+
+_NAMES = {
+    "radial_clearance": "clearance",
+    "supply_temperature": "supply temperature",
+}
+
+
+def tolerance_histograms(study: ToleranceStudy, title: str = "") -> Figure:
+    """Histograms of threshold speed and critical mass, and the inputs' importance.
+
+    Samples whose film did not converge are in none of them, and said.
+    """
+    failures = [sample for sample, _ in study.samples.failures]
+    failed = len(failures)
+    threshold_speed, critical_mass = (
+        np.delete(study.samples.outputs[name], failures)
+        for name in ("threshold_speed", "critical_mass")
+    )
+    nominal, importance = study.nominal, study.importance
+    mass = study.rotor.rigid_mass
+    if failed:
+        title += f"\n{threshold_speed.size} samples; {failed} more did not converge"
+    figure, axes = new_axes(1, 3, (9.6, 3.4), title.strip())
+    speed, mass_axes, bars = axes[0]
+    at = None if nominal["threshold_speed"] is None else nominal["threshold_speed"] * RPM
+    mark = (study.operating_speed * RPM, "operating speed")
+    _histogram(speed, threshold_speed * RPM, "threshold speed [rpm]", at, mark)
+    _histogram(
+        mass_axes, critical_mass, "critical mass at operating speed [kg]", nominal["critical_mass"],
+        None if mass is None else (mass, "rotor mass"),
+    )  # fmt: skip
+    names = list(importance)[::-1]
+    values = np.array([importance[name] for name in names])
+    bars.barh(
+        [_NAMES.get(name, name) for name in names],
+        values,
+        color="#c9d8e4",
+        edgecolor="k",
+        height=0.6,
+    )
+    bars.axvline(0.0, color="k", linewidth=0.8)
+    bars.set(xlim=(-1.05, 1.05), xlabel="rank correlation with growth rate [-]")
+    bars.grid(visible=False, axis="y")
+    return figure
+
+
+def _histogram(
+    ax: Axes, values: Array, label: str, nominal: float | None, mark: tuple[float, str] | None
+) -> None:
+    known = values[np.isfinite(values)]
+    name = label.split(" at ")[0].split(" [")[0]
+    if not known.size:
+        # An axis without a value would show numbers that nobody computed.
+        ax.set_axis_off()
+        where = "\nwithin the speeds looked at" if "speed [" in label else ""
+        ax.text(
+            0.5, 0.5, f"no sample has a {name}{where}", transform=ax.transAxes, ha="center",
+            va="center",
+        )  # fmt: skip
+        return
+    edges = np.histogram_bin_edges(known, "auto")
+    share = np.full(known.size, 100.0 / values.size)
+    ax.hist(known, edges.tolist(), weights=share, color="#c9d8e4", edgecolor="k", linewidth=0.7)
+    missing = values.size - known.size
+    if missing:
+        ax.set_title(f"{100.0 * missing / values.size:.3g} % of samples have none")
+    if mark is not None:
+        ax.axvline(mark[0], color="#8c1d2f", linewidth=1.8, label=mark[1])
+    if nominal is not None:
+        ax.axvline(nominal, color="k", linewidth=1.3, linestyle="--", label="nominal")
+    ax.margins(y=0.3)
+    ax.set(xlabel=label, ylabel="share of samples [%]")
+    if mark is not None or nominal is not None:
+        ax.legend(loc="upper right")

@@ -14,9 +14,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ...atomic import replacing
+from ...rows import RPM as RPM
 from ...text import caption
 
-RPM = 30.0 / np.pi
 MICRO = 1e6
 MEGA = 1e-6
 

@@ -9,11 +9,10 @@ from typing import TypeAlias
 import numpy as np
 import rerun.blueprint as rrb
 
-from . import film_view, map_view, series_view
-from .contents import OrbitTrack, RecordingContents
-from .eigenvalue_view import eigenvalue_view
+from . import film_view, series_view
+from .contents import RecordingContents
 from .orbit_view import orbit_view, zoom_reach
-from .quantities import film_names, frames_of, quantities, shows
+from .runs import SPEED, TIME, Run
 from .series_view import (
     ACTUATOR_FORCE,
     DISPLACEMENT,
@@ -24,8 +23,6 @@ from .series_view import (
     WHIRL,
     Series,
 )
-from .spectrum_view import spectrum_view
-from .timeline import SPEED, TIME
 
 Part: TypeAlias = rrb.View | rrb.Container
 REVOLUTIONS_PER_SECOND = 3.0
@@ -84,7 +81,7 @@ def layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint
         rrb.Tabs(*pages, active_tab=names.index(page) if page in names else 0),
         rrb.TimePanel(
             state="collapsed",
-            timeline=TIME if contents.orbits else SPEED,
+            timeline=TIME if contents.runs else SPEED,
             playback_speed=_playback_speed(contents),
             loop_mode="all",
             play_state="playing",
@@ -97,9 +94,9 @@ def layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint
 
 
 def _playback_speed(contents: RecordingContents) -> float | None:
-    if not contents.orbits:
+    if not contents.runs:
         return None
-    fastest = max(float(np.abs(track.speed).max()) for track in contents.orbits)
+    fastest = max(float(np.abs(run.orbit.speed).max()) for run in contents.runs)
     return float(f"{REVOLUTIONS_PER_SECOND * 2.0 * np.pi / max(fastest, 1e-9):.1g}")
 
 
@@ -107,10 +104,10 @@ def _summary_view() -> rrb.View:
     return rrb.TextDocumentView(origin="/summary", name="What is seen")
 
 
-def _groups(contents: RecordingContents) -> list[tuple[str, list[OrbitTrack]]]:
+def _groups(contents: RecordingContents) -> list[tuple[str, list[Run]]]:
     """Runs at constant speed and runs through the speeds: each a tab of its own."""
-    steady = [track for track in contents.orbits if track.constant_speed]
-    passing = [track for track in contents.orbits if not track.constant_speed]
+    steady = [run for run in contents.runs if run.orbit.constant_speed]
+    passing = [run for run in contents.runs if not run.orbit.constant_speed]
     return [
         (name, group)
         for name, group in (("Constant speed", steady), ("Varying speed", passing))
@@ -118,7 +115,7 @@ def _groups(contents: RecordingContents) -> list[tuple[str, list[OrbitTrack]]]:
     ]
 
 
-def _grouped(contents: RecordingContents, make: Callable[[list[OrbitTrack]], Part]) -> Part:
+def _grouped(contents: RecordingContents, make: Callable[[list[Run]], Part]) -> Part:
     parts: list[Part] = []
     for name, group in _groups(contents):
         parts.append(_named(make(group), name))
@@ -131,45 +128,41 @@ def _film_views(contents: RecordingContents, flat: bool) -> list[Part]:
         return []
     make = film_view.unwrapped_view if flat else film_view.film_view
     views: list[Part] = []
-    for name in film_names(films):
-        frames = frames_of(films, name)
-        for quantity in quantities(films):
-            if shows(quantity, frames):
+    for name in film_view.film_names(films):
+        frames = film_view.frames_of(films, name)
+        for quantity in film_view.quantities(films):
+            if film_view.shows(quantity, frames):
                 views.append(make(name, quantity, frames[0]))
     return views
 
 
-def _map_views(contents: RecordingContents) -> list[Part]:
-    return [map_view.map_view(picture, i) for i, picture in enumerate(contents.maps)]
-
-
-def _cascade_views(contents: RecordingContents) -> list[Part]:
-    return [map_view.cascade_view(picture, i) for i, picture in enumerate(contents.cascades)]
+def _frequency_views(contents: RecordingContents) -> list[Part]:
+    """Cascades of runs through the speeds, spectra of those at one."""
+    views: list[Part] = [chart.view for chart in contents.cascade_charts]
+    return views if contents.spectrum_chart is None else [*views, contents.spectrum_chart.view]
 
 
 def _overview(contents: RecordingContents) -> Part:
     front = FRONTS.get(contents.kind, WHOLE_JOB)
-    frequencies: list[Part] = _cascade_views(contents) if front.frequencies else []
-    if front.frequencies and contents.spectra:
-        frequencies.append(spectrum_view(len(contents.spectra)))
+    frequencies: list[Part] = _frequency_views(contents) if front.frequencies else []
     middle: list[Part] = [_tabs(frequencies)] if frequencies else []
     films = _film_views(contents, flat=False)
     if middle and films:
         middle.append(_tabs(films))
     else:
         middle += films[-2:] if len(films) > 1 else [*films, *_film_views(contents, flat=True)]
-    stability = _map_views(contents)[:1]
-    if contents.eigenvalues:
+    stability: list[Part] = [chart.view for chart in contents.map_charts[:1]]
+    if contents.eigenvalue_chart is not None:
         # The map is that of a rigid rotor: another one has its eigenvalues in front.
-        rigid = bool(contents.maps) and contents.maps[0].rotor_mass is not None
-        stability.insert(len(stability) if rigid else 0, eigenvalue_view())
+        rigid = contents.rotor_mass is not None
+        stability.insert(len(stability) if rigid else 0, contents.eigenvalue_chart.view)
     right: list[Part] = [_summary_view()]
     if stability:
         right.append(_tabs(stability))
     columns: list[Part] = []
     widths: list[float] = []
-    if contents.orbits:
-        columns.append(_grouped(contents, lambda tracks: _orbits_and_series(tracks, front.series)))
+    if contents.runs:
+        columns.append(_grouped(contents, lambda runs: _orbits_and_series(runs, front.series)))
         widths.append(1.8)
     for parts, width in ((middle, 0.95), (right, 1.25)):
         if parts:
@@ -182,11 +175,11 @@ def _tabs(parts: Sequence[Part]) -> Part:
     return rrb.Tabs(*parts) if len(parts) > 1 else parts[0]
 
 
-def _orbits_and_series(tracks: list[OrbitTrack], wanted: tuple[Series, ...]) -> Part:
-    plots = [series_view.series_view(one, tracks) for one in series_view.series_of(tracks, wanted)]
-    views = [orbit_view(track) for track in tracks]
-    if len(tracks) == 1 and tracks[0].constant_speed:
-        views.append(orbit_view(tracks[0], zoom=zoom_reach(tracks)))
+def _orbits_and_series(runs: list[Run], wanted: tuple[Series, ...]) -> Part:
+    plots = [series_view.series_view(one, runs) for one in series_view.series_of(runs, wanted)]
+    views = [orbit_view(run) for run in runs]
+    if len(runs) == 1 and runs[0].orbit.constant_speed:
+        views.append(orbit_view(runs[0], zoom=zoom_reach(runs)))
     return rrb.Vertical(
         rrb.Horizontal(*views),
         *plots,
@@ -195,18 +188,18 @@ def _orbits_and_series(tracks: list[OrbitTrack], wanted: tuple[Series, ...]) -> 
 
 
 def _orbits(contents: RecordingContents) -> Part | None:
-    if not contents.orbits:
+    if not contents.runs:
         return None
     page = _grouped(contents, _orbits_and_close_ups)
     return _named(page, "Orbits")
 
 
-def _orbits_and_close_ups(tracks: list[OrbitTrack]) -> Part:
-    reach = zoom_reach(tracks)
-    close_ups = [orbit_view(track, zoom=reach) for track in tracks if track.constant_speed]
+def _orbits_and_close_ups(runs: list[Run]) -> Part:
+    reach = zoom_reach(runs)
+    close_ups = [orbit_view(run, zoom=reach) for run in runs if run.orbit.constant_speed]
     return rrb.Vertical(
-        rrb.Horizontal(*[orbit_view(track) for track in tracks], *close_ups),
-        series_view.series_view(series_view.DISPLACEMENT, tracks),
+        rrb.Horizontal(*[orbit_view(run) for run in runs], *close_ups),
+        series_view.series_view(series_view.DISPLACEMENT, runs),
         row_shares=[1.6, 1.0],
     )
 
@@ -224,22 +217,19 @@ def _film(contents: RecordingContents) -> Part | None:
 def _stability(contents: RecordingContents) -> Part | None:
     parts: list[Part] = []
     if contents.maps:
-        parts.append(_tabs(_map_views(contents)))
-    if contents.eigenvalues:
-        parts.append(eigenvalue_view())
-    if contents.spectra:
-        parts.append(spectrum_view(len(contents.spectra)))
-    if contents.cascades:
-        parts.append(_tabs(_cascade_views(contents)))
+        parts.append(_tabs([chart.view for chart in contents.map_charts]))
+    if contents.eigenvalue_chart is not None:
+        parts.append(contents.eigenvalue_chart.view)
+    parts += [_tabs(views)] if (views := _frequency_views(contents)) else []
     return rrb.Grid(*parts, grid_columns=2, name="Stability") if parts else None
 
 
 def _time_series(contents: RecordingContents) -> Part | None:
-    if not contents.orbits:
+    if not contents.runs:
         return None
     return _named(_grouped(contents, _all_series), "Time series")
 
 
-def _all_series(tracks: list[OrbitTrack]) -> Part:
-    shown = series_view.series_of(tracks)
-    return rrb.Vertical(*[series_view.series_view(one, tracks) for one in shown])
+def _all_series(runs: list[Run]) -> Part:
+    shown = series_view.series_of(runs)
+    return rrb.Vertical(*[series_view.series_view(one, runs) for one in shown])

@@ -6,19 +6,17 @@ import socket
 import subprocess
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
 from types import TracebackType
 
-import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
 from ...errors import InputError
+from ...orbit import Orbit, concatenate
+from ..viewer import has_display, viewer_program
 from . import series_view
-from .contents import TRACK_OPTIONS, OrbitTrack
 from .orbit_view import log_orbit_piece, log_surroundings, orbit_view
-from .timeline import TIME
-from .viewer import has_display, viewer_program
+from .runs import TIME, Run, runs_of
 from .write import APPLICATION
 
 PORT = 9876
@@ -44,7 +42,7 @@ class LiveView:
     def __init__(self, title: str, stream: rr.RecordingStream | None = None) -> None:
         self.title = title
         self.stream: rr.RecordingStream = stream or _viewer_stream()
-        self.last: dict[str, OrbitTrack] = {}
+        self.last: dict[str, Run] = {}
 
     def __enter__(self) -> LiveView:
         return self
@@ -58,26 +56,30 @@ class LiveView:
         self.stream.flush()
         self.stream.disconnect()
 
-    def show(self, piece: OrbitTrack) -> None:
-        """Send one piece; pieces of one name follow each other in time."""
-        before = self.last.get(piece.name)
+    def show(self, piece: Orbit) -> None:
+        """Send one piece of an orbit; pieces of one run follow each other in time."""
+        if piece.t.size < 2:
+            return
+        (run,) = runs_of([piece])
+        before = self.last.get(run.name)
         if before is None:
-            log_surroundings(self.stream, piece)
-            self.last[piece.name] = piece
+            log_surroundings(self.stream, run)
+            self.last[run.name] = run
             self.stream.send_blueprint(self._layout(), make_active=True)
         else:
-            piece = _joined(before, piece)
-            self.last[piece.name] = piece
-        log_orbit_piece(self.stream, piece)
-        series_view.log_series(self.stream, piece)
+            # From the last sample on, so that the trail has no gaps.
+            run = run._replace(orbit=concatenate([before.orbit.part(-1), piece]))
+            self.last[run.name] = run
+        log_orbit_piece(self.stream, run)
+        series_view.log_series(self.stream, run)
 
     def _layout(self) -> rrb.Blueprint:
-        tracks: Sequence[OrbitTrack] = list(self.last.values())
+        runs: Sequence[Run] = list(self.last.values())
         plots = (series_view.DISPLACEMENT, series_view.ECCENTRICITY, series_view.WHIRL)
         return rrb.Blueprint(
             rrb.Horizontal(
-                rrb.Horizontal(*[orbit_view(track) for track in tracks]),
-                rrb.Vertical(*[series_view.series_view(one, tracks) for one in plots]),
+                rrb.Horizontal(*[orbit_view(run) for run in runs]),
+                rrb.Vertical(*[series_view.series_view(one, runs) for one in plots]),
                 name=self.title,
             ),
             rrb.TimePanel(state="collapsed", timeline=TIME, play_state="following"),
@@ -86,21 +88,6 @@ class LiveView:
             auto_layout=False,
             auto_views=False,
         )
-
-
-def _joined(before: OrbitTrack, piece: OrbitTrack) -> OrbitTrack:
-    """Put the last sample before in front of the piece, so that the trail has no gaps."""
-    joined = {
-        name: np.concatenate([getattr(before, name)[-1:], getattr(piece, name)])
-        for name in ("time", "x", "y", "angle", "speed")
-    }
-    for name in TRACK_OPTIONS:
-        last, new = getattr(before, name), getattr(piece, name)
-        if new is not None:
-            # What a run began without (a load, say) was zero until now.
-            last = np.zeros_like(new[:1]) if last is None else last[-1:]
-            joined[name] = np.concatenate([last, new])
-    return replace(piece, **joined)
 
 
 def _viewer_stream() -> rr.RecordingStream:

@@ -12,10 +12,9 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import ArrayLike, NDArray
 
-from .chart import log_labels
-from .colormaps import ALARM, FAINT, LINE, TEXT, model_colour
-from .contents import OrbitTrack
-from .timeline import REVOLUTIONS, SAMPLE_LIMIT, TIME, send_track, thin
+from ...orbit import once_per_turn
+from .colours import ALARM, FAINT, LINE, TEXT, model_colour
+from .runs import REVOLUTIONS, SAMPLE_LIMIT, TIME, Run, log_labels, send_run, thin
 
 MICRO = 1e6
 PATH_LIMIT = 6_000
@@ -26,7 +25,7 @@ FORCE_LENGTH = 0.45
 
 
 def orbit_entity(name: str) -> str:
-    """Where a track's 2-D picture lives."""
+    """Where a run's 2-D picture lives."""
     return f"orbit/{name}"
 
 
@@ -35,12 +34,12 @@ def view_points(x: ArrayLike, y: ArrayLike) -> NDArray[np.float32]:
     return np.stack([np.asarray(x) * MICRO, -np.asarray(y) * MICRO], axis=-1).astype(np.float32)
 
 
-def log_orbit(stream: rr.RecordingStream, track: OrbitTrack) -> None:
-    """Write one track's orbit picture."""
-    root = orbit_entity(track.name)
-    log_surroundings(stream, track)
-    points = view_points(track.x, track.y)
-    colour = model_colour(track.name)
+def log_orbit(stream: rr.RecordingStream, run: Run) -> None:
+    """Write one run's orbit picture."""
+    root = orbit_entity(run.name)
+    log_surroundings(stream, run)
+    points = view_points(run.orbit.x, run.orbit.y)
+    colour = model_colour(run.name)
     stream.log(
         f"{root}/path_um",
         rr.LineStrips2D(
@@ -50,52 +49,47 @@ def log_orbit(stream: rr.RecordingStream, track: OrbitTrack) -> None:
         ),
         static=True,
     )
-    log_orbit_piece(stream, track)
+    log_orbit_piece(stream, run)
 
 
-def log_orbit_piece(stream: rr.RecordingStream, track: OrbitTrack) -> None:
-    """Write what moves: trail, journal, film force. `track` may be a part of a run."""
-    root, points = orbit_entity(track.name), view_points(track.x, track.y)
-    _send_trail(stream, f"{root}/trail_um", track, points)
-    _send_journal(stream, f"{root}/journal_um", track, points)
-    if track.force is not None:
-        _send_force(stream, f"{root}/film_force_N", track, points)
+def log_orbit_piece(stream: rr.RecordingStream, run: Run) -> None:
+    """Write what moves: trail, journal, film force. `run` may be a part of a run."""
+    root, points = orbit_entity(run.name), view_points(run.orbit.x, run.orbit.y)
+    _send_trail(stream, f"{root}/trail_um", run, points)
+    _send_journal(stream, f"{root}/journal_um", run, points)
+    if np.any(run.force):
+        _send_force(stream, f"{root}/film_force_N", run, points)
 
 
-def zoom_reach(tracks: Sequence[OrbitTrack]) -> float:
+def zoom_reach(runs: Sequence[Run]) -> float:
     """Half-width [m] of the close-up that holds the smallest of these motions."""
     sizes = []
-    for track in tracks:
-        x0, y0 = middle_of(track)
-        sizes.append(float(np.hypot(track.x - x0, track.y - y0).max()))
-    return max(1.3 * min(sizes), 1e-3 * tracks[0].radial_clearance)
+    for run in runs:
+        x0, y0 = run.orbit.equilibrium
+        sizes.append(float(np.hypot(run.orbit.x - x0, run.orbit.y - y0).max()))
+    return max(1.3 * min(sizes), 1e-3 * runs[0].orbit.radial_clearance)
 
 
-def middle_of(track: OrbitTrack) -> tuple[float, float]:
-    """Give the static position, or the mean one where that is not known [m]."""
-    if track.equilibrium is not None:
-        return float(track.equilibrium[0]), float(track.equilibrium[1])
-    return float(track.x.mean()), float(track.y.mean())
-
-
-def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DView:
-    """View of one track with the trail of the last turns.
+def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
+    """View of one run with the trail of the last turns.
 
     Parameters
     ----------
-    track : OrbitTrack
+    run : Run
     zoom : float, optional
         Half-width of a close-up about the static position [m]; else the whole clearance circle.
     """
-    root = orbit_entity(track.name)
-    reach = (1.32 * track.reach if zoom is None else zoom) * MICRO
-    x0, y0 = (0.0, 0.0) if zoom is None else middle_of(track)
+    root = orbit_entity(run.name)
+    reach = (1.32 * run.reach if zoom is None else zoom) * MICRO
+    x0, y0 = (0.0, 0.0) if zoom is None else run.orbit.equilibrium
     centre = view_points(x0, y0).astype(float)
     # The force's scale belongs to the whole circle.
     hidden = [] if zoom is None else [f"- /{root}/film_force_N"]
     title = "Orbit" if zoom is None else f"Close-up, {2.0 * reach:.2g} µm wide"
-    turns = abs(track.revolutions[-1] - track.revolutions[0])
-    seconds = float(track.time[-1] - track.time[0]) * min(1.0, TRAIL_REVOLUTIONS / max(turns, 1e-9))
+    turns = abs(run.orbit.revolutions[-1] - run.orbit.revolutions[0])
+    seconds = float(run.orbit.t[-1] - run.orbit.t[0]) * min(
+        1.0, TRAIL_REVOLUTIONS / max(turns, 1e-9)
+    )
     now = rrb.TimeRangeBoundary.cursor_relative
     trail = rrb.VisibleTimeRanges(
         [
@@ -107,7 +101,7 @@ def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DVie
     )
     return rrb.Spatial2DView(
         origin=f"/{root}",
-        name=f"{title}: {track.heading}",
+        name=f"{title}: {run.heading}",
         visual_bounds=rrb.VisualBounds2D(
             x_range=[centre[0] - reach, centre[0] + reach],
             y_range=[centre[1] - reach, centre[1] + reach],
@@ -117,11 +111,11 @@ def orbit_view(track: OrbitTrack, zoom: float | None = None) -> rrb.Spatial2DVie
     )
 
 
-def log_surroundings(stream: rr.RecordingStream, track: OrbitTrack) -> None:
+def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
     """Write what stands still: contact line, axes, labels, static position, Poincare points."""
-    root = orbit_entity(track.name)
-    reach = track.reach * MICRO
-    line = view_points(*track.contact_line.T)
+    root = orbit_entity(run.name)
+    reach = run.reach * MICRO
+    line = view_points(*run.orbit.boundary.T)
     arrow = reach * 1.1
     stream.log(
         f"{root}/clearance_um",
@@ -146,21 +140,25 @@ def log_surroundings(stream: rr.RecordingStream, track: OrbitTrack) -> None:
         stream,
         f"{root}/labels",
         [[arrow, -0.04 * reach], [0, -1.2 * reach], [0, 1.06 * reach]],
-        ["x, load", "y", f"journal touches, c = {track.radial_clearance * MICRO:.4g} µm"],
+        ["x, load", "y", f"journal touches, c = {run.orbit.radial_clearance * MICRO:.4g} µm"],
         LINE,
     )
-    if track.equilibrium is not None:
-        place = view_points(track.equilibrium[0], track.equilibrium[1])
-        stream.log(
-            f"{root}/equilibrium_um",
-            rr.Points2D([place], radii=rr.Radius.ui_points(2.5), colors=LINE, draw_order=45.0),
-            static=True,
-        )
-    if track.once_per_turn is not None and len(track.once_per_turn):
+    stream.log(
+        f"{root}/equilibrium_um",
+        rr.Points2D(
+            [view_points(*run.orbit.equilibrium)],
+            radii=rr.Radius.ui_points(2.5),
+            colors=LINE,
+            draw_order=45.0,
+        ),
+        static=True,
+    )
+    points = once_per_turn(run.orbit)
+    if points is not None:
         stream.log(
             f"{root}/once_per_turn_um",
             rr.Points2D(
-                view_points(*track.once_per_turn.T),
+                view_points(*points.T),
                 radii=rr.Radius.ui_points(1.3),
                 colors=ALARM,
                 draw_order=40.0,
@@ -175,14 +173,14 @@ def _bright(colour: tuple[int, int, int]) -> tuple[int, int, int]:
 
 
 def _send_trail(
-    stream: rr.RecordingStream, entity: str, track: OrbitTrack, points: NDArray[np.float32]
+    stream: rr.RecordingStream, entity: str, run: Run, points: NDArray[np.float32]
 ) -> None:
     # One short segment per row: the view's time window joins the last turns into the trail.
     rows = thin(len(points), TRAIL_LIMIT)
     stream.log(
         entity,
         rr.LineStrips2D.from_fields(
-            radii=rr.Radius.ui_points(1.6), colors=_bright(model_colour(track.name))
+            radii=rr.Radius.ui_points(1.6), colors=_bright(model_colour(run.name))
         ),
         static=True,
     )
@@ -191,11 +189,11 @@ def _send_trail(
         first = rows[np.maximum(np.searchsorted(rows, part) - 1, 0)]
         return rr.LineStrips2D.columns(strips=np.stack([points[first], points[part]], axis=1))
 
-    send_track(stream, entity, track, rows, segments)
+    send_run(stream, entity, run, rows, segments)
 
 
 def _send_journal(
-    stream: rr.RecordingStream, entity: str, track: OrbitTrack, points: NDArray[np.float32]
+    stream: rr.RecordingStream, entity: str, run: Run, points: NDArray[np.float32]
 ) -> None:
     stream.log(
         entity,
@@ -205,30 +203,29 @@ def _send_journal(
         static=True,
     )
     rows = thin(len(points), SAMPLE_LIMIT)
-    send_track(
-        stream, entity, track, rows, lambda part: rr.Points2D.columns(positions=points[part])
-    )
+    send_run(stream, entity, run, rows, lambda part: rr.Points2D.columns(positions=points[part]))
 
 
 def _send_force(
-    stream: rr.RecordingStream, entity: str, track: OrbitTrack, points: NDArray[np.float32]
+    stream: rr.RecordingStream, entity: str, run: Run, points: NDArray[np.float32]
 ) -> None:
-    force = np.asarray(track.force)
-    magnitude = np.hypot(force[:, 0], force[:, 1])
+    force = run.force
+    magnitude = np.hypot(*force.T)
+    middle = max(float(np.median(magnitude)), 1e-12)
     # The middle of the record sets the scale: at touch-down the force grows without bound.
-    scale = FORCE_LENGTH * track.radial_clearance * MICRO / max(float(np.median(magnitude)), 1e-12)
+    scale = (
+        FORCE_LENGTH * run.orbit.radial_clearance * MICRO / max(float(np.median(magnitude)), 1e-12)
+    )
     stream.log(
         entity,
         rr.Arrows2D.from_fields(radii=rr.Radius.ui_points(1.2), colors=(0, 158, 115)),
         static=True,
     )
     rows = thin(len(points), TRAIL_LIMIT)
-    shown = (
-        force * np.minimum(1.0, 2.0 * np.median(magnitude) / np.maximum(magnitude, 1e-12))[:, None]
-    )
+    shown = force * np.minimum(1.0, 2.0 * middle / np.maximum(magnitude, 1e-12))[:, None]
     arrows = (shown * (scale, -scale)).astype(np.float32)
 
     def columns(part: NDArray[np.intp]) -> rr.ComponentColumnList:
         return rr.Arrows2D.columns(vectors=arrows[part], origins=points[part])
 
-    send_track(stream, entity, track, rows, columns)
+    send_run(stream, entity, run, rows, columns)

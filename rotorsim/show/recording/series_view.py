@@ -10,9 +10,10 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from .colormaps import model_colour
-from .contents import OrbitTrack
-from .timeline import REVOLUTIONS, RPM, SAMPLE_LIMIT, TIME, send_track, thin
+from ...orbit import Orbit
+from ...rows import RPM
+from .colours import model_colour
+from .runs import REVOLUTIONS, SAMPLE_LIMIT, TIME, Run, send_run, thin
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -35,26 +36,19 @@ class Series:
     entity, title : str
         Both with the unit.
     values : callable
-        Track -> (n,) array, or (n, 2) for x and y, in that unit; None where the track has none.
+        Orbit -> (n,) array, or (n, 2) for x and y, in that unit; None where the run has none.
     low, high : float, optional
-        Vertical range that holds for every track; what is left open follows the data.
-    needs : str
-        Field of the track without which it has none; empty: every track has the series.
+        Vertical range that holds for every run; what is left open follows the data.
     """
 
     entity: str
     title: str
-    values: Callable[[OrbitTrack], Array | None]
+    values: Callable[[Orbit], Array | None]
     low: float | None = None
     high: float | None = None
-    needs: str = ""
-
-    def of(self, track: OrbitTrack) -> bool:
-        """Whether the track has it."""
-        return not self.needs or getattr(track, self.needs) is not None
 
 
-def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
+def whirl_ratio(orbit: Orbit, revolutions: float = 4.0) -> Array:
     """Count turns of the journal's velocity per turn of the shaft.
 
     The velocity turns as often as the journal goes round, wherever the orbit's centre is: that
@@ -62,7 +56,7 @@ def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
 
     Parameters
     ----------
-    track : OrbitTrack
+    orbit : Orbit
     revolutions : float
         Averaged over this many turns of the shaft, centred.
 
@@ -71,10 +65,10 @@ def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
     (n,) array
         [-]; negative for backward whirl. NaN where the journal or the shaft stands still.
     """
-    turns, count = track.revolutions, track.time.size
+    turns, count = orbit.revolutions, orbit.t.size
     if not np.all(np.diff(turns) > 0.0) or count < 4:
         return np.full(count, np.nan)
-    z = (track.x + 1j * track.y) / track.radial_clearance
+    z = (orbit.x + 1j * orbit.y) / orbit.radial_clearance
     velocity = np.gradient(z, turns)
     phase = np.unwrap(np.angle(velocity))
     # One-sided differences at the ends are less exact than their neighbours.
@@ -86,29 +80,34 @@ def whirl_ratio(track: OrbitTrack, revolutions: float = 4.0) -> Array:
     return np.where(np.abs(velocity) > STANDSTILL, ratio, np.nan)
 
 
-def _displacement(track: OrbitTrack) -> Array:
-    return np.stack([track.x, track.y], axis=-1) * MICRO
+def _displacement(orbit: Orbit) -> Array:
+    return np.stack([orbit.x, orbit.y], axis=-1) * MICRO
 
 
-def _disc(track: OrbitTrack) -> Array | None:
-    return None if track.disc is None else track.disc * MICRO
+def _disc(orbit: Orbit) -> Array | None:
+    return orbit.displacements[:, 2:4] * MICRO if orbit.displacements.shape[1] > 2 else None
+
+
+def _load(orbit: Orbit) -> Array | None:
+    return orbit.load if np.any(orbit.load) else None
+
+
+def _actuator_force(orbit: Orbit) -> Array | None:
+    return orbit.actuator_force if orbit.actuated else None
 
 
 DISPLACEMENT = Series("displacement_um", "Displacement x, y [µm]", _displacement)
-DISC = Series("disc_displacement_um", "Displacement of the disc x, y [µm]", _disc, needs="disc")
-LOAD = Series("load_N", "Load on the rotor x, y [N]", lambda track: track.load, needs="load")
-ACTUATOR_FORCE = Series(
-    "actuator_force_N", "Actuator force x, y [N]", lambda track: track.actuator_force,
-    needs="actuator_force",
-)  # fmt: skip
+DISC = Series("disc_displacement_um", "Displacement of the disc x, y [µm]", _disc)
+LOAD = Series("load_N", "Load on the rotor x, y [N]", _load)
+ACTUATOR_FORCE = Series("actuator_force_N", "Actuator force x, y [N]", _actuator_force)
 ECCENTRICITY = Series(
-    "eccentricity_ratio", "Eccentricity ratio [-]", lambda track: track.eccentricity_ratio,
+    "eccentricity_ratio", "Eccentricity ratio [-]", lambda orbit: orbit.eccentricity_ratio,
     0.0, 1.05,
 )  # fmt: skip
 MINIMUM_FILM = Series(
-    "minimum_film_um", "Minimum film thickness [µm]", lambda track: track.thinnest_film * MICRO, 0.0
+    "minimum_film_um", "Minimum film thickness [µm]", lambda orbit: orbit.min_film * MICRO, 0.0
 )
-SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]", lambda track: track.speed * RPM, 0.0)
+SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]", lambda orbit: orbit.speed * RPM, 0.0)
 WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", whirl_ratio, 0.0, 1.2)
 ALL_SERIES = (
     LOAD, ACTUATOR_FORCE, DISPLACEMENT, DISC, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
@@ -132,52 +131,52 @@ def envelope_rows(values: Array, limit: int = ENVELOPE_LIMIT) -> Indices:
     return np.unique(np.concatenate([ends, start + lows, start + highs]))
 
 
-def log_series(stream: rr.RecordingStream, track: OrbitTrack) -> None:
-    """Write every series of one track."""
-    colour = model_colour(track.name)
+def log_series(stream: rr.RecordingStream, run: Run) -> None:
+    """Write every series of one run."""
+    colour = model_colour(run.name)
     pale = tuple(int(0.5 * c + 110) for c in colour)
-    every = thin(track.time.size, SAMPLE_LIMIT)
+    every = thin(run.samples, SAMPLE_LIMIT)
     for series in ALL_SERIES:
-        values = series.values(track)
+        values = series.values(run.orbit)
         if values is None:
             continue
         if values.ndim == 1:
             rows = envelope_rows(values)
-            _send(stream, series, track, values[:, None], rows, [track.heading], [colour])
+            _send(stream, series, run, values[:, None], rows, [run.heading], [colour])
         else:
             unit = series.title[series.title.index("[") :]
-            names = [f"{axis} {unit}, {track.heading}" for axis in "xy"]
-            _send(stream, series, track, values, every, names, [colour, pale])
+            names = [f"{axis} {unit}, {run.heading}" for axis in "xy"]
+            _send(stream, series, run, values, every, names, [colour, pale])
 
 
-def series_of(tracks: Sequence[OrbitTrack], wanted: Sequence[Series] = ALL_SERIES) -> list[Series]:
-    """Those of the wanted series that the tracks have."""
-    return [one for one in wanted if any(one.of(track) for track in tracks)]
+def series_of(runs: Sequence[Run], wanted: Sequence[Series] = ALL_SERIES) -> list[Series]:
+    """Those of the wanted series that the runs have."""
+    return [one for one in wanted if any(one.values(run.orbit) is not None for run in runs)]
 
 
-def series_view(series: Series, tracks: Sequence[OrbitTrack]) -> rrb.TimeSeriesView:
-    """Plot of one quantity of all tracks, in a window where there is too much to draw."""
-    low, high = _vertical_range(series, tracks)
+def series_view(series: Series, runs: Sequence[Run]) -> rrb.TimeSeriesView:
+    """Plot of one quantity of all runs, in a window where there is too much to draw."""
+    low, high = _vertical_range(series, runs)
     return rrb.TimeSeriesView(
         origin=f"/series/{series.entity}",
-        contents=[f"$origin/{track.name}" for track in tracks],
+        contents=[f"$origin/{run.name}" for run in runs],
         name=series.title,
         axis_y=rrb.ScalarAxis(range=(low, high)),
         plot_legend=rrb.PlotLegend(visible=True, corner=rrb.Corner2D.LeftTop),
-        time_ranges=_window(series, tracks),
+        time_ranges=_window(series, runs),
     )
 
 
 def _send(
     stream: rr.RecordingStream,
     series: Series,
-    track: OrbitTrack,
+    run: Run,
     values: Array,
     rows: Indices,
     names: list[str],
     paint: list[tuple[int, ...]],
 ) -> None:
-    entity = f"series/{series.entity}/{track.name}"
+    entity = f"series/{series.entity}/{run.name}"
     style = rr.SeriesLines(
         names=names,
         colors=paint,
@@ -190,25 +189,25 @@ def _send(
     def columns(part: Indices) -> rr.ComponentColumnList:
         return rr.Scalars.columns(scalars=values[part].reshape(-1)).partition([count] * part.size)
 
-    send_track(stream, entity, track, rows, columns)
+    send_run(stream, entity, run, rows, columns)
 
 
-def _vertical_range(series: Series, tracks: Sequence[OrbitTrack]) -> tuple[float, float]:
+def _vertical_range(series: Series, runs: Sequence[Run]) -> tuple[float, float]:
     if series.low is not None and series.high is not None:
         return series.low, series.high
-    known = [values for track in tracks if (values := series.values(track)) is not None]
+    known = [values for run in runs if (values := series.values(run.orbit)) is not None]
     low = min(float(np.nanmin(values)) for values in known)
     high = max(float(np.nanmax(values)) for values in known)
     margin = max(0.08 * (high - low), 1e-3 * max(abs(low), abs(high)), 1e-9)
     return low - margin if series.low is None else series.low, high + margin
 
 
-def _window(series: Series, tracks: Sequence[OrbitTrack]) -> rrb.VisibleTimeRanges | None:
-    longest = max(tracks, key=lambda track: track.time.size)
-    if series is not DISPLACEMENT or longest.time.size <= WINDOW_LIMIT:
+def _window(series: Series, runs: Sequence[Run]) -> rrb.VisibleTimeRanges | None:
+    longest = max((run.orbit for run in runs), key=lambda orbit: orbit.t.size)
+    if series is not DISPLACEMENT or longest.t.size <= WINDOW_LIMIT:
         return None
     turns = abs(longest.revolutions[-1] - longest.revolutions[0])
-    seconds = float(longest.time[-1] - longest.time[0]) * WINDOW_REVOLUTIONS / max(turns, 1e-9)
+    seconds = float(longest.t[-1] - longest.t[0]) * WINDOW_REVOLUTIONS / max(turns, 1e-9)
     at = rrb.TimeRangeBoundary.cursor_relative
     back = -round(1000 * WINDOW_REVOLUTIONS)
     return rrb.VisibleTimeRanges(

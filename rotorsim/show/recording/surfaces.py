@@ -6,12 +6,10 @@ ahead, z along the shaft.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .contents import FilmSurface
+from ...study.film_motion import FilmFrame
 
 Array = NDArray[np.float64]
 MILLI = 1e3
@@ -26,34 +24,24 @@ UNWRAPPED_STRETCH = 1.8
 """Heights of the rolled-out film are drawn larger by this."""
 
 
-@dataclass(frozen=True)
-class DisplayGrid:
-    """Film quantity on the display grid, closed around the turn and at both ends.
+def display_grid(film: FilmFrame) -> tuple[Array, Array]:
+    """Grid on which a film is shown, closed around the turn and at both ends.
 
-    Attributes
-    ----------
-    theta : (AROUND + 1,) array
-        -pi to pi: the load line in the middle [rad].
-    y : (ALONG + 1,) array
-        -L/2 to L/2 [mm].
+    Returns
+    -------
+    (AROUND + 1,), (ALONG + 1,) arrays
+        Angles -pi to pi, the load line in the middle [rad]; places -L/2 to L/2 [mm].
     """
-
-    theta: Array
-    y: Array
-
-
-def display_grid(film: FilmSurface) -> DisplayGrid:
-    """Grid on which a film is shown."""
     half = 0.5 * film.length * MILLI
-    return DisplayGrid(np.linspace(-np.pi, np.pi, AROUND + 1), np.linspace(-half, half, ALONG + 1))
+    return np.linspace(-np.pi, np.pi, AROUND + 1), np.linspace(-half, half, ALONG + 1)
 
 
-def on_display_grid(film: FilmSurface, values: Array, at_ends: float | None) -> Array:
+def on_display_grid(film: FilmFrame, values: Array, at_ends: float | None) -> Array:
     """Interpolate a film field (n, m) to the display grid.
 
     Parameters
     ----------
-    film : FilmSurface
+    film : FilmFrame
     values : (n, m) array
     at_ends : float or None
         Known value at both ends of the bearing (ambient pressure: 0); None holds the last cell's.
@@ -63,17 +51,17 @@ def on_display_grid(film: FilmSurface, values: Array, at_ends: float | None) -> 
     (AROUND + 1, ALONG + 1) array
         First and last row are the same place.
     """
-    grid = display_grid(film)
+    angle, place = display_grid(film)
     turned = np.mod(film.theta + np.pi, 2.0 * np.pi) - np.pi
     order = np.argsort(turned)
     theta = turned[order]
-    around = _linear(grid.theta, theta, values[order], period=2.0 * np.pi)
+    around = _linear(angle, theta, values[order], period=2.0 * np.pi)
     y, across = film.y * MILLI, around.T
     if at_ends is not None:
         border = np.full((1, across.shape[1]), at_ends)
-        y = np.concatenate([grid.y[:1], y, grid.y[-1:]])
+        y = np.concatenate([place[:1], y, place[-1:]])
         across = np.concatenate([border, across, border])
-    return _linear(grid.y, y, across).T
+    return _linear(place, y, across).T
 
 
 def _linear(wanted: Array, known: Array, values: Array, period: float | None = None) -> Array:
@@ -91,12 +79,12 @@ def bore_radius(journal_radius: float) -> float:
     return journal_radius * MILLI * (1.0 + DRAWN_CLEARANCE)
 
 
-def exaggeration(film: FilmSurface) -> float:
+def exaggeration(film: FilmFrame) -> float:
     """How many times larger than true the clearance is drawn."""
     return DRAWN_CLEARANCE * film.journal_radius / film.radial_clearance
 
 
-def wrapped(film: FilmSurface, height: Array) -> Array:
+def wrapped(film: FilmFrame, height: Array) -> Array:
     """Film round the bore: vertices (AROUND + 1)*(ALONG + 1) x 3.
 
     Parameters
@@ -104,20 +92,20 @@ def wrapped(film: FilmSurface, height: Array) -> Array:
     height : (AROUND + 1, ALONG + 1) array
         Radial displacement in journal radii.
     """
-    grid = display_grid(film)
+    angle, place = display_grid(film)
     radius = bore_radius(film.journal_radius) + height * film.journal_radius * MILLI
-    x = radius * np.cos(grid.theta)[:, None]
-    y = radius * np.sin(grid.theta)[:, None]
-    z = np.broadcast_to(grid.y, x.shape)
+    x = radius * np.cos(angle)[:, None]
+    y = radius * np.sin(angle)[:, None]
+    z = np.broadcast_to(place, x.shape)
     return np.stack([x, y, z], axis=-1).reshape(-1, 3)
 
 
-def unwrapped(film: FilmSurface, height: Array) -> Array:
+def unwrapped(film: FilmFrame, height: Array) -> Array:
     """Film rolled out: angle times radius along x, height along y, axial along z [mm]."""
-    grid = display_grid(film)
+    angle, place = display_grid(film)
     radius = film.journal_radius * MILLI
-    x = np.broadcast_to(grid.theta[:, None] * radius, height.shape)
-    z = np.broadcast_to(grid.y, height.shape)
+    x = np.broadcast_to(angle[:, None] * radius, height.shape)
+    z = np.broadcast_to(place, height.shape)
     return np.stack([x, UNWRAPPED_STRETCH * height * radius, z], axis=-1).reshape(-1, 3)
 
 

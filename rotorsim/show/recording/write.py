@@ -8,16 +8,15 @@ import rerun as rr
 
 from ...atomic import replacing
 from ...errors import InputError
+from ...orbit import once_per_turn
 from ...text import markdown
+from .charts import send_eigenvalues, send_operating_point
 from .contents import RecordingContents
-from .eigenvalue_view import log_eigenvalues
 from .film_view import log_films
 from .layout import layout
-from .map_view import log_cascade, log_map
 from .orbit_view import log_orbit
+from .runs import SAMPLE_LIMIT
 from .series_view import log_series
-from .spectrum_view import log_spectra
-from .timeline import SAMPLE_LIMIT
 
 APPLICATION = "rotorsim"
 
@@ -70,19 +69,20 @@ def log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> Non
     """Write everything to an open stream (a file's, or a running viewer's)."""
     text = f"# {markdown(contents.title)}\n\n{contents.summary}{_notes(contents)}"
     stream.log("summary", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN), static=True)
-    for track in contents.orbits:
-        log_orbit(stream, track)
-        log_series(stream, track)
+    for run in contents.runs:
+        log_orbit(stream, run)
+        log_series(stream, run)
     if contents.films:
-        log_films(stream, contents.films, contents.orbits)
-    if contents.eigenvalues:
-        log_eigenvalues(stream, contents.eigenvalues, contents.orbits)
-    for number, picture in enumerate(contents.maps):
-        log_map(stream, picture, number, contents.orbits)
-    for number, cascade in enumerate(contents.cascades):
-        log_cascade(stream, cascade, number)
-    if contents.spectra:
-        log_spectra(stream, contents.spectra)
+        log_films(stream, contents.films, contents.runs)
+    plane = contents.eigenvalue_chart
+    for chart in (*contents.map_charts, plane, *contents.cascade_charts, contents.spectrum_chart):
+        if chart is not None:
+            chart.log(stream)
+    if plane is not None:
+        send_eigenvalues(stream, plane, contents.modes, contents.runs)
+    for chart, one in zip(contents.map_charts, contents.maps, strict=True):
+        speeds = one["speed"].values
+        send_operating_point(stream, chart, speeds, contents.rotor_mass, contents.runs)
 
 
 def _notes(contents: RecordingContents) -> str:
@@ -94,16 +94,17 @@ def _notes(contents: RecordingContents) -> str:
         "- Orbits: x along the load, y 90 degrees ahead in the direction of rotation"
         " (counter-clockwise); at the white line the journal touches the bush.",
         "- Bearing: true proportions but for the clearance, whose exaggeration is written there;"
-        " the film's height is its pressure or temperature.",
+        " the film's height is its pressure, or its temperature: the mean across the film, whose"
+        " hottest place the caption gives, too.",
     ]
-    if any(track.once_per_turn is not None for track in contents.orbits):
+    if any(once_per_turn(orbit) is not None for orbit in contents.orbits):
         lines.append("- Red points: the journal once per turn of the shaft, in the steady part.")
     if any(film.time is not None for film in contents.films):
         lines.append(
             "- The film follows the journal in the first and the last turns; between them it is"
             " shown at some whole turns of the shaft. Its caption says when."
         )
-    thinned = [t.heading for t in contents.orbits if t.time.size > SAMPLE_LIMIT]
+    thinned = [run.heading for run in contents.runs if run.samples > SAMPLE_LIMIT]
     if thinned:
         lines.append(
             f"- More than {SAMPLE_LIMIT:,} samples, thinned evenly here: {', '.join(thinned)}."

@@ -16,7 +16,7 @@ _SVG_LIMIT = 400_000
 
 def figure(drawn: Figure, caption: str) -> str:
     """Figure within the page: as SVG, or as pixels where that would grow long."""
-    from ..figures import figure_bytes
+    from ..figures.style import figure_bytes
 
     data, kind = figure_bytes(drawn, "svg"), "svg+xml"
     if len(data) > _SVG_LIMIT:

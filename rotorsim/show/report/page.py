@@ -19,7 +19,7 @@ from .verdict import headline
 
 if TYPE_CHECKING:
     from ...files.scenario import Scenario
-    from ..main_job import Results
+    from ...study.main_job import Results
 
 _CAPTIONS = {
     "coefficients": "Stiffness and damping against speed, load frame.",
@@ -55,7 +55,7 @@ def report_page(found: Results, when: datetime.datetime | None = None) -> str:
     Parameters
     ----------
     found : Results
-        What `rotorsim.show.main_job.compute` gives.
+        What `rotorsim.study.main_job.compute` gives.
     when : datetime, optional
         Date of the report; now by default.
     """
@@ -178,7 +178,7 @@ def _conventions() -> str:
 
 def _figures(found: Results) -> dict[str, list[str]]:
     """Figures by the section they belong to."""
-    from ..job_figures import figures
+    from ..job import figures
 
     placed: dict[str, list[str]] = {
         name: [] for name in ("stability", "static", "coefficients", "orbits")

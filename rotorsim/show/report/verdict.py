@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from ...bearing.operating_point import OperatingPoint
+    from ...study.main_job import Results
     from ...study.stability import StabilityCurve
-    from ..main_job import Results
 
 
 def headline(found: Results) -> str:

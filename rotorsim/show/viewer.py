@@ -8,7 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...errors import InputError
+from ..errors import InputError
 
 ANALYTICS_NOTE = (
     "The rerun viewer reports anonymous usage to its makers unless told not to:"

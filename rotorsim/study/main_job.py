@@ -1,4 +1,4 @@
-"""The main job after the table: stability, orbits, film fields; then everything written."""
+"""The main job after the table: stability, orbits, film fields."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError, RotorsimError
 from ..model.orbit import OrbitForce, SpeedRamp
 from ..orbit.description import describe_orbit
-from ..study import orbits as orbit_steps
-from ..study.stability import StabilityCurve, stability_curves
-from ..study.summary import expected_growth, heating_effect
-from .film_motion import film_in_motion
+from . import orbits as orbit_steps
+from .film_motion import FilmFrame, film_in_motion
+from .stability import Campbell, StabilityCurve, campbell_curves, stability_curves
+from .summary import expected_growth, heating_effect
 
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..machine.map import StabilityMap
     from ..orbit import Orbit
-    from .recording import EigenvaluePath, FilmSurface
 
 Result = TypeVar("Result")
 Announce = Callable[[str], None]
@@ -49,10 +48,11 @@ class Results:
     chart : StabilityMap or None
     orbits : tuple of Orbit
         Each thermal model at constant speed, then each through the run-up.
-    films : tuple of FilmSurface
-        In the orbit's clearance: for each thermal model at rest, ascending in speed, and along an
-        orbit on the nonlinear film, ascending in time.
-    eigenvalues : tuple of EigenvaluePath
+    films : tuple of OperatingPoint
+        With their fields, in the orbit's clearance: for each thermal model, ascending in speed.
+    film_motion : tuple of FilmFrame
+        Along orbits on the nonlinear film, ascending in time.
+    modes : tuple of Campbell
         Of the scenario's rotor over speed in the orbit's clearance, for each thermal model.
     problems : tuple of str
         What went wrong, where, and what to do.
@@ -64,8 +64,9 @@ class Results:
     curves: tuple[StabilityCurve, ...] = ()
     chart: StabilityMap | None = None
     orbits: tuple[Orbit, ...] = ()
-    films: tuple[FilmSurface, ...] = ()
-    eigenvalues: tuple[EigenvaluePath, ...] = ()
+    films: tuple[OperatingPoint, ...] = ()
+    film_motion: tuple[FilmFrame, ...] = ()
+    modes: tuple[Campbell, ...] = ()
     problems: tuple[str, ...] = ()
 
     @property
@@ -80,9 +81,9 @@ class Results:
         return [describe_orbit(orbit) for orbit in self.orbits]
 
     @property
-    def films_at_top_speed(self) -> list[FilmSurface]:
-        """Film at rest at the highest speed, of each thermal model."""
-        return list({film.name: film for film in self.films if film.time is None}.values())
+    def films_at_top_speed(self) -> list[OperatingPoint]:
+        """Film at the highest speed, of each thermal model."""
+        return list({point.thermal_model: point for point in self.films}.values())
 
 
 @dataclass
@@ -120,18 +121,19 @@ def compute(
     """
     attempt = Attempts(announce)
     curves = attempt("critical mass", lambda: stability_curves(table, scenario.rotor), [])
-    paths = attempt("eigenvalues", lambda: eigenvalue_paths(scenario, table), [])
+    modes = attempt("eigenvalues", lambda: modes_of(scenario, table), [])
     chart = attempt("stability map", lambda: map_of(scenario, table), None)
-    films: list[FilmSurface] = []
+    films: list[OperatingPoint] = []
+    motion: list[FilmFrame] = []
     if scenario.orbit is not None:
         settings, _ = orbit_steps.orbit_settings(scenario)
         if orbits is None:
             orbits = simulated_orbits(scenario, table, attempt)
-        films = attempt("film fields", lambda: film_frames(scenario, settings.radial_clearance), [])
+        films = attempt("film fields", lambda: film_points(scenario, settings.radial_clearance), [])
         if settings.force is OrbitForce.FILM:
             for orbit in orbits:
                 label = f"film along the orbit, {orbit.thermal_model}"
-                films += attempt(label, lambda orbit=orbit: film_in_motion(scenario, orbit), [])
+                motion += attempt(label, lambda orbit=orbit: film_in_motion(scenario, orbit), [])
     orbits = orbits or ()
     return Results(
         scenario=scenario,
@@ -141,7 +143,8 @@ def compute(
         chart=chart,
         orbits=tuple(orbits),
         films=tuple(films),
-        eigenvalues=tuple(paths),
+        film_motion=tuple(motion),
+        modes=tuple(modes),
         problems=tuple(attempt.problems),
     )
 
@@ -213,59 +216,39 @@ def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
     return float(np.median(known))
 
 
-def eigenvalue_paths(scenario: Scenario, table: CoefficientTable) -> list[EigenvaluePath]:
-    """Eigenvalues of the scenario's rotor over speed, for each thermal model of the table.
+def modes_of(scenario: Scenario, table: CoefficientTable) -> list[Campbell]:
+    """All modes of the scenario's rotor over speed, for each thermal model of the table.
 
     In the orbit's clearance; without an orbit in the first one.
     """
-    from ..machine.machine import Machine
-    from ..machine.modes import known_speeds, modes
-    from ..machine.support import TableSupport
-    from ..machine.thresholds import threshold_speeds
-    from .recording import EigenvaluePath
-
     rotor, settings = scenario.rotor, scenario.orbit
     if rotor is None:
         return []
     clearance = settings.radial_clearance if settings else scenario.radial_clearances[0]
-    paths = []
+    found = []
     for model in (str(name) for name in table.dataset["thermal_model"].values):
         one = orbit_steps.curve_of(table, model, clearance)
-        machine = Machine.on_identical(rotor, TableSupport(one.interpolator()))
-        if known_speeds(machine).size < 2:
-            continue
-        branches, thresholds = modes(machine), threshold_speeds(machine)
-        first = thresholds[0] if thresholds else None
-        paths.append(
-            EigenvaluePath(
-                name=model,
-                speed=branches.parameter,
-                eigenvalues=branches.eigenvalues,
-                threshold_speed=None if first is None else first.speed,
-                whirl_frequency_ratio=None if first is None else first.whirl_frequency_ratio,
-            )
-        )
-    return paths
+        if one.converged.any():
+            found += campbell_curves(one, rotor, count=None)
+    return [curve for curve in found if curve.branches.parameter.size > 1]
 
 
-def film_frames(scenario: Scenario, clearance: float) -> list[FilmSurface]:
-    """Film over the speeds, for each thermal model; each warm-starts the next."""
+def film_points(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
+    """Films over the speeds with their fields, for each thermal model; each starts the next."""
     from ..bearing.solve import solve_case
-    from .recording import FilmSurface
 
     count = min(len(scenario.speeds), FILM_FRAMES)
     chosen = np.unique(np.linspace(0, len(scenario.speeds) - 1, count).round().astype(int))
-    frames = []
+    found = []
     for model in scenario.thermal_models:
         case, warm = scenario.case(clearance, model), None
         for speed in scenario.speeds[chosen]:
             point, warm = solve_case(case, float(speed), initial=warm, keep_fields=True)
             if point.converged:
-                radius = case.bearing.journal_radius
-                frames.append(FilmSurface.from_operating_point(point, radius))
+                found.append(point)
             else:
                 warm = None
-    return frames
+    return found
 
 
 def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:

@@ -1,8 +1,10 @@
-"""A plane of two inputs, coloured by what is stable in it."""
+"""The stability map: over two inputs, what is stable and what only heating makes unstable."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,18 +14,14 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ...errors import InputError
+from ...rows import QUANTITIES
 from ...text import caption
 from .style import axes_or_new, figure_of, model_label, model_style
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class PlaneAxis:
-    """One axis of a plane: its label with the unit, and values in that unit."""
-
-    label: str
-    values: Array
 
 
 @dataclass(frozen=True)
@@ -43,53 +41,58 @@ _REGIONS = (
 )
 
 
-def stability_plane(
-    x: PlaneAxis,
-    y: PlaneAxis,
-    isothermal_growth: Array,
-    heated_growth: Array | None = None,
-    operating_point: tuple[float, float] | None = None,
+_MARKS = ("*", "D", "s", "^")
+
+
+def stability_map(
+    chart: xr.Dataset,
+    x: str = "speed",
+    y: str = "mass",
+    marks: Mapping[str, tuple[float, float]] | None = None,
     title: str = "",
     ax: Axes | None = None,
-    border: str = "threshold",
 ) -> Figure:
-    """Plane of any two inputs: stable, unstable, and what only heating makes unstable.
+    """Plane of two inputs: stable, unstable, and what only heating makes unstable.
 
     Parameters
     ----------
-    x, y : PlaneAxis
-        With n and m values.
-    isothermal_growth, heated_growth : (n, m) arrays
-        Growth rates, positive where unstable, NaN where unknown [1/s]. With one of them only, the
-        map knows stable and unstable.
-    operating_point : (x, y), optional
-        Marked by a star, in the axes' units.
-    border : str
-        Name of the line between stable and unstable.
+    chart : xarray.Dataset
+        ``growth_rate`` over ``thermal_model``, x and y, as `StabilityMap.plane` and
+        `Plane.dataset` give it. With isothermal and THD there are regions
+        that only heating changes; with one model, stable and unstable.
+    x, y : str
+        Dimensions, see `rotorsim.rows.QUANTITIES`.
+    marks : mapping of str to (x, y), optional
+        Points to mark (SI), by what the legend calls them: ``{"highest speed": (840.0, 300.0)}``.
 
     Raises
     ------
     InputError
         An axis has one value.
     """
-    for axis in (x, y):
-        if axis.values.size < 2:
-            raise InputError("a map needs two values or more along each axis", key=axis.label)
+    for name in (x, y):
+        if chart.sizes[name] < 2:
+            raise InputError("a map needs two values or more along each axis", key=name)
+    models = [str(model) for model in chart["thermal_model"].values]
+    cold = "isothermal" if "isothermal" in models else models[0]
+    hot = "thd" if "thd" in models else models[-1]
+    border = "critical mass" if "mass" in (x, y) else "threshold"
     ax = axes_or_new(ax, (6.6, 4.9))
     # The least of two rates bends within a coarse cell: only on a fine grid do the regions meet.
-    along, across = _finer(x.values), _finer(y.values)
-    isothermal_growth = _bilinear(x.values, y.values, isothermal_growth, along, across)
-    if heated_growth is not None:
-        heated_growth = _bilinear(x.values, y.values, heated_growth, along, across)
-    hot = isothermal_growth if heated_growth is None else heated_growth
-    known = np.isfinite(isothermal_growth) & np.isfinite(hot)
+    along, across = (_finer(chart[name].values.astype(float)) for name in (x, y))
+    rates = {
+        model: _bilinear(chart, x, y, model, along, across) for model in dict.fromkeys((cold, hot))
+    }
+    first, second = rates[cold], rates[hot]
+    known = np.isfinite(first) & np.isfinite(second)
+    along, across = QUANTITIES[x].shown(along), QUANTITIES[y].shown(across)
     ax.set_facecolor("#bbbbbb")
     # A region is where the least of its (signed) growth rates is positive: smooth borders.
     signed = (
-        np.minimum(-isothermal_growth, -hot),
-        np.minimum(-isothermal_growth, hot),
-        np.minimum(isothermal_growth, hot),
-        np.minimum(isothermal_growth, -hot),
+        np.minimum(-first, -second),
+        np.minimum(-first, second),
+        np.minimum(first, second),
+        np.minimum(first, -second),
     )
     shown = []
     for region, level in zip(_REGIONS, signed, strict=True):
@@ -103,15 +106,15 @@ def stability_plane(
             filled.set_edgecolor(region.edge)
             filled.set_linewidth(0.0)
         shown.append(Patch(fc=region.face, hatch=region.hatch, ec="#333333", label=region.label))
-    shown += _borders(ax, along, across, isothermal_growth, heated_growth, border)
+    shown += _borders(ax, along, across, rates, border)
     if not known.all():
         shown.append(Patch(fc="#bbbbbb", ec="#333333", label="not computed"))
-    if operating_point is not None:
-        ax.plot(*operating_point, "*", color="k", mfc="w", ms=13, mew=1.2, zorder=5, clip_on=False)
-        shown.append(
-            Line2D([], [], ls="", marker="*", color="k", mfc="w", ms=11, label="operating point")
-        )
-    ax.set(xlabel=x.label, ylabel=y.label, title=caption(title))
+    for sign, (label, point) in zip(_MARKS, (marks or {}).items(), strict=False):
+        place = [QUANTITIES[n].shown(v) for n, v in zip((x, y), point, strict=True)]
+        look: dict[str, Any] = {"marker": sign, "color": "k", "mfc": "w", "ls": ""}
+        ax.plot(*place, ms=13 if sign == "*" else 8, mew=1.2, zorder=5, clip_on=False, **look)
+        shown.append(Line2D([], [], ms=9, label=label, **look))
+    ax.set(xlabel=QUANTITIES[x].axis, ylabel=QUANTITIES[y].axis, title=caption(title))
     ax.grid(visible=False)
     figure = figure_of(ax)
     if len(figure.axes) == 1:
@@ -135,9 +138,11 @@ def _finer(values: Array) -> Array:
     return np.interp(place, np.arange(values.size), values)
 
 
-def _bilinear(x: Array, y: Array, values: Array, along: Array, across: Array) -> Array:
-    """`values` (n, m) between; NaN only within cells of which a corner is NaN."""
-    for axis, (nodes, wanted) in enumerate(((x, along), (y, across))):
+def _bilinear(chart: xr.Dataset, x: str, y: str, model: str, along: Array, across: Array) -> Array:
+    """Growth rates of one model between; NaN only within cells of which a corner is NaN."""
+    values = chart["growth_rate"].sel(thermal_model=model).transpose(x, y).values
+    for axis, (name, wanted) in enumerate(((x, along), (y, across))):
+        nodes = chart[name].values
         low = np.clip(np.searchsorted(nodes, wanted, "right") - 1, 0, max(nodes.size - 2, 0))
         high = np.minimum(low + 1, nodes.size - 1)
         span = np.where(high > low, nodes[high] - nodes[low], 1.0)
@@ -149,12 +154,10 @@ def _bilinear(x: Array, y: Array, values: Array, along: Array, across: Array) ->
     return values
 
 
-def _borders(
-    ax: Axes, x: Array, y: Array, isothermal: Array, heated: Array | None, name: str
-) -> list[Line2D]:
+def _borders(ax: Axes, x: Array, y: Array, rates: Mapping[str, Array], name: str) -> list[Line2D]:
     handles = []
-    for model, growth in (("isothermal", isothermal), ("thd", heated)):
-        if growth is None or not (np.nanmin(growth) < 0.0 < np.nanmax(growth)):
+    for model, growth in rates.items():
+        if not (np.nanmin(growth) < 0.0 < np.nanmax(growth)):
             continue
         dashes = model_style(model)["linestyle"]
         values = np.ma.masked_invalid(growth).T

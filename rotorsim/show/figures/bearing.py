@@ -1,0 +1,196 @@
+"""One bearing: stiffness, damping and thresholds against speed; pressure and temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+from numpy.typing import NDArray
+
+from ...bearing.operating_point import FilmFields, OperatingPoint
+from ...bearing.table import CoefficientTable
+from ...errors import InputError
+from ...rows import QUANTITIES, RPM, ZERO_CELSIUS
+from ...study.stability import StabilityCurve
+from .style import MARKERS, MEGA, model_label, model_style, new_axes
+
+Array = NDArray[np.float64]
+
+
+def coefficients_over_speed(table: CoefficientTable, title: str = "") -> Figure:
+    """The eight coefficients against speed: line style by model, marker by clearance."""
+    figure, axes = new_axes(2, 4, (11.5, 5.2), title, sharex=True)
+    clearances = table.dataset["radial_clearance"].values.astype(float)
+    for row, (symbol, unit) in enumerate((("K", "MN/m"), ("C", "kN s/m"))):
+        values = table.stiffness / 1e6 if symbol == "K" else table.damping / 1e3
+        for column, (i, j) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
+            ax = axes[row, column]
+            ax.set_title(rf"${symbol}_{{{'xy'[i]}{'xy'[j]}}}$ [{unit}]")
+            ax.axhline(0.0, color="0.6", linewidth=0.6)
+            for index in np.ndindex(values.shape[:-3]):
+                names = dict(zip(table.choices, index, strict=True))
+                model = str(table.dataset["thermal_model"].values[names["thermal_model"]])
+                clearance = float(clearances[names["radial_clearance"]])
+                look = _look(model, clearance, clearances, table.speeds.size)
+                ax.plot(table.speeds * RPM, values[index][:, i, j], **look)
+    for ax in axes[1]:
+        ax.set_xlabel(QUANTITIES["speed"].axis)
+    _legend_below(figure, axes[0, 0])
+    return figure
+
+
+def thresholds_over_speed(
+    curves: Sequence[StabilityCurve], rotor_mass: float | None = None, title: str = ""
+) -> Figure:
+    """Critical mass (logarithmic) and whirl frequency ratio against speed."""
+    figure, axes = new_axes(1, 2, (9.0, 3.8), title)
+    left, right = axes[0]
+    clearances = np.array([curve.choices["radial_clearance"] for curve in curves])
+    for curve in curves:
+        model, clearance = curve.choices["thermal_model"], curve.choices["radial_clearance"]
+        look = _look(model, clearance, clearances, curve.speed.size)
+        left.semilogy(curve.speed * RPM, curve.critical_mass, **look)
+        right.plot(curve.speed * RPM, curve.whirl_frequency_ratio, **look)
+    if rotor_mass is not None:
+        left.axhline(rotor_mass, color="k", linewidth=1.0)
+        left.annotate(
+            f"rotor {rotor_mass:.4g} kg",
+            (0.98, rotor_mass),
+            xycoords=("axes fraction", "data"),
+            ha="right",
+            va="bottom",
+            fontsize=8,
+        )
+    left.set_ylabel(QUANTITIES["critical_mass"].axis)
+    right.set_ylabel(QUANTITIES["whirl_frequency_ratio"].axis)
+    right.set_ylim(0.0, 0.6)
+    for ax in (left, right):
+        ax.set_xlabel(QUANTITIES["speed"].axis)
+    _legend_below(figure, left)
+    return figure
+
+
+def _look(model: str, clearance: float, clearances: Array, size: int) -> dict[str, object]:
+    """Line of one curve: narrower clearances darker, so that they stay apart in grey."""
+    known = np.unique(clearances)
+    number = int(np.searchsorted(known, clearance))
+    return {
+        **model_style(model),
+        "marker": MARKERS[number % len(MARKERS)],
+        "markevery": max(1, size // 8),
+        "alpha": 1.0 - 0.5 * number / max(known.size - 1, 1),
+        "label": f"{model_label(model)}, {QUANTITIES['radial_clearance'].said(clearance)}",
+    }
+
+
+def _legend_below(figure: Figure, ax: Axes) -> None:
+    handles, labels = ax.get_legend_handles_labels()
+    if handles:
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(3, len(handles)))
+
+
+def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
+    """Contours over angle and axial position: one row per film, pressure and temperature.
+
+    All films share one scale, so that colours may be compared.
+
+    Raises
+    ------
+    InputError
+        A point was solved without its fields.
+    """
+    films = [_fields(point) for point in points]
+    heat = [mean_temperature(film) for film in films]
+    known = [values for values in heat if values is not None]
+    size = (9.0 if known else 5.0, 0.7 + 2.3 * len(films))
+    figure, axes = new_axes(len(films), 2 if known else 1, size, title, sharex=True, sharey=True)
+    top = max(float(film.pressure.max()) for film in films) * MEGA
+    for row, point, film, warm in zip(axes, points, films, heat, strict=True):
+        label = f"{model_label(point.thermal_model)}: pressure [MPa]"
+        _contours(figure, row[0], film, film.pressure * MEGA, (0.0, top), "viridis", label)
+        if not known:
+            continue
+        if warm is None:
+            row[1].set_axis_off()
+            row[1].text(0.5, 0.5, "uniform temperature", ha="center", transform=row[1].transAxes)
+            continue
+        span = (min(float(t.min()) for t in known), max(float(t.max()) for t in known))
+        label = f"{model_label(point.thermal_model)}: mean across the film [°C]"
+        _contours(figure, row[1], film, warm, span, "inferno", label)
+    for ax in axes[-1]:
+        ax.set_xlabel("angle from the load line [deg]")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("axial position [mm]")
+    return figure
+
+
+def film_profiles(points: Sequence[OperatingPoint], title: str = "") -> Figure:
+    """Pressure and temperature around the bearing at mid-plane, all films in one picture."""
+    films = [_fields(point) for point in points]
+    heat = [mean_temperature(film) for film in films]
+    warm = any(values is not None for values in heat)
+    figure, axes = new_axes(1, 2 if warm else 1, (8.5 if warm else 4.6, 3.2), title)
+    for point, film, temperature in zip(points, films, heat, strict=True):
+        middle = int(np.abs(film.y).argmin())
+        angle, order = _angles(film.theta)
+        name = point.thermal_model
+        look = {**model_style(name), "label": model_label(name)}
+        axes[0, 0].plot(angle, film.pressure[order, middle] * MEGA, **look)
+        if temperature is not None:
+            axes[0, 1].plot(angle, temperature[order, middle], **look)
+    axes[0, 0].set_ylabel("mid-plane pressure [MPa]")
+    if warm:
+        axes[0, 1].set_ylabel("mid-plane, mean across the film [°C]")
+    for ax in axes[0]:
+        ax.set_xlabel("angle from the load line [deg]")
+        ax.xaxis.set_major_locator(MultipleLocator(90))
+        ax.set_xlim(-180, 180)
+        ax.legend()
+    return figure
+
+
+def _contours(
+    figure: Figure,
+    ax: Axes,
+    film: FilmFields,
+    values: Array,
+    span: tuple[float, float],
+    colours: str,
+    label: str,
+) -> None:
+    angle, order = _angles(film.theta)
+    low, high = span[0], span[1] if span[1] > span[0] else span[0] + 1.0
+    shown = np.clip(values[order].T, low, high)
+    filled = ax.contourf(angle, film.y * 1e3, shown, np.linspace(low, high, 25), cmap=colours)
+    # Lines carry the shape where the print has no colour.
+    if np.ptp(shown) > 0.0:
+        ax.contour(
+            angle, film.y * 1e3, shown, np.linspace(low, high, 7)[1:-1], colors="w", linewidths=0.6
+        )
+    ax.grid(visible=False)
+    ax.xaxis.set_major_locator(MultipleLocator(90))
+    ax.set_title(label)
+    bar = figure.colorbar(filled, ax=ax, pad=0.02)
+    bar.locator = MaxNLocator(6)
+    bar.update_ticks()
+
+
+def _angles(theta: Array) -> tuple[Array, NDArray[np.intp]]:
+    turned = np.degrees(np.mod(theta + np.pi, 2.0 * np.pi) - np.pi)
+    order = np.argsort(turned)
+    return turned[order], order
+
+
+def mean_temperature(film: FilmFields) -> Array | None:
+    """Mean across the film, (n, m) [degC]; None where the film has one temperature."""
+    mean = film.temperature.mean(axis=2) - ZERO_CELSIUS
+    return mean if np.ptp(mean) > 1e-6 else None
+
+
+def _fields(point: OperatingPoint) -> FilmFields:
+    if point.fields is None:
+        raise InputError("the operating point was solved without its fields", key="fields")
+    return point.fields

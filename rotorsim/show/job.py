@@ -1,0 +1,320 @@
+"""What the main job computed, shown: figures, recordings, and the summary in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..orbit import Orbit, speed_cascade
+from ..orbit.description import describe_orbit, run_names, run_title, whirl_range_text
+from ..rows import QUANTITIES, RPM
+from ..study.film_motion import film_at_rest
+from ..study.main_job import Announce, Attempts, Results, compute, summary
+from ..study.orbits import orbit_settings
+from ..study.wording import late_whirl
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+    from ..bearing.table import CoefficientTable
+    from ..files.scenario import Scenario
+    from .recording import RecordingContents
+
+SURROUNDING_SPEEDS = 12
+"""Of the table that is computed for an orbit's recording alone."""
+MICRO = 1e6
+
+
+def write_results(
+    results: Results, folder: Path, name: str, announce: Announce = lambda _text: None
+) -> tuple[dict[str, list[Path]], list[str]]:
+    """Write figures and recording.
+
+    Returns
+    -------
+    files : dict
+        ``figures`` and ``recording``, each the paths that were written.
+    problems : list of str
+        What could not be written, and why.
+    """
+    attempt = Attempts(announce)
+
+    def draw() -> list[Path]:
+        return save_figures(figures(results), folder / "figures" / name, ("png",))
+
+    def write() -> list[Path]:
+        return [write_recording_of(results, folder / "logs" / f"{name}.rrd")]
+
+    files = {"figures": attempt("figures", draw, []), "recording": attempt("recording", write, [])}
+    return files, attempt.problems
+
+
+def save_figures(
+    named: Iterable[tuple[str, Figure]], folder: Path, formats: Sequence[str] = ("png", "svg")
+) -> list[Path]:
+    """Write named figures into `folder`."""
+    from .figures import save_figure
+
+    written: list[Path] = []
+    for name, figure in named:
+        written += save_figure(figure, folder / name, formats=formats)
+        figure.clear()  # it refers to itself in circles: what it drew would stay for a while
+    return written
+
+
+def figures(results: Results) -> Iterator[tuple[str, Figure]]:
+    """Give file names (without suffix) and figures of all that the results have."""
+    from . import figures as plots
+
+    title = results.scenario.title
+    yield "coefficients", plots.coefficients_over_speed(results.table, title)
+    yield "critical_mass", plots.thresholds_over_speed(results.curves, results.rotor_mass, title)
+    planes = map_planes(results)
+    for plane in planes:
+        clearance = float(plane["radial_clearance"])
+        shown = QUANTITIES["radial_clearance"].said(clearance)
+        figure = plots.stability_map(
+            plane, marks=_marks(results, clearance), title=f"{title}\n{shown}"
+        )
+        micro = f"{clearance * MICRO:.4g}um"
+        yield f"stability_map_{micro}" if len(planes) > 1 else "stability_map", figure
+    if results.modes:
+        yield "eigenvalues", plots.eigenvalue_plot(results.modes, title)
+    if results.films:
+        yield "film", plots.film_maps(results.films_at_top_speed, title)
+        yield "film_profiles", plots.film_profiles(results.films_at_top_speed, title)
+    if results.orbits:
+        settings = results.scenario.orbit
+        yield from orbit_figures(
+            results.orbits, title, settings is not None and settings.steady_only
+        )
+
+
+def orbit_figures(
+    orbits: Sequence[Orbit], title: str, steady_only: bool = False
+) -> Iterator[tuple[str, Figure]]:
+    """Give names and figures: all orbits, and a cascade of each run through the speeds."""
+    from . import figures as plots
+
+    yield "orbits", plots.orbit_plot(orbits, title, steady_only)
+    for orbit, name in zip(orbits, run_names(orbits), strict=True):
+        rows = speed_cascade(orbit)
+        if rows is not None:
+            yield (
+                f"cascade_{name}",
+                plots.spectrum_cascade(rows, f"{title}\n{run_title(name)}"),
+            )
+
+
+def map_planes(results: Results) -> list[xr.Dataset]:
+    """Stability maps over speed and mass, one for each clearance; none for a single speed."""
+    if results.chart is None:
+        return []
+    dataset = results.chart.dataset
+    if min(dataset.sizes["speed"], dataset.sizes["mass"]) < 2:
+        return []
+    return [
+        dataset.isel(radial_clearance=place) for place in range(dataset.sizes["radial_clearance"])
+    ]
+
+
+def _marks(results: Results, clearance: float) -> dict[str, tuple[float, float]]:
+    """The rotor on a map: at the highest speed, for which verdicts are given, and its orbits'."""
+    mass, settings = results.rotor_mass, results.scenario.orbit
+    if mass is None:
+        return {}
+    top = float(results.table.speeds[-1])
+    marks = {f"highest speed, {top * RPM:.0f} rpm": (top, mass)}
+    here = settings is not None and np.isclose(clearance, settings.radial_clearance, rtol=1e-6)
+    steady = [float(orbit.speed[-1]) for orbit in results.orbits if orbit.constant_speed]
+    if here and steady and not np.isclose(steady[0], top, rtol=1e-6):
+        marks[f"orbit, {steady[0] * RPM:.0f} rpm"] = (steady[0], mass)
+    return marks
+
+
+def write_recording_of(results: Results, path: Path) -> Path:
+    """Write the whole recording: orbits, film, eigenvalues, map, summary."""
+    from .recording import write_recording
+
+    return write_recording(path, recording_contents(results))
+
+
+def recording_contents(results: Results) -> RecordingContents:
+    """Everything that the recording shows."""
+    from .recording import RecordingContents
+
+    kinds = {orbit.kind for orbit in results.orbits}
+    both = len({orbit.constant_speed for orbit in results.orbits}) > 1
+    radius = results.scenario.bearing.journal_radius
+    return RecordingContents(
+        title=results.scenario.title,
+        summary=markdown_summary(results),
+        # Runs at one speed and through the speeds beside each other are the whole job.
+        kind=kinds.pop() if len(kinds) == 1 and not both else "",
+        orbits=results.orbits,
+        films=(*(film_at_rest(point, radius) for point in results.films), *results.film_motion),
+        modes=results.modes,
+        maps=tuple(map_planes(results)),
+        rotor_mass=results.rotor_mass,
+    )
+
+
+def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "Orbits") -> Path:
+    """Write orbits as a recording for the rerun viewer.
+
+    Parameters
+    ----------
+    orbits : Orbit or iterable of Orbit
+    path : str or Path
+        Ends in ``.rrd``, usually ``logs/NAME.rrd``.
+    title : str
+
+    Returns
+    -------
+    Path
+        The file written; `rotorsim.open_viewer` or ``rotorsim view`` opens it.
+    """
+    from .recording import RecordingContents, write_recording
+
+    several = (orbits,) if isinstance(orbits, Orbit) else tuple(orbits)
+    kind = several[0].kind if several else ""
+    return write_recording(path, RecordingContents(title, orbit_notes(several), kind, several))
+
+
+def record_scenario(
+    scenario: Scenario,
+    orbits: Sequence[Orbit],
+    path: Path,
+    *,
+    table: CoefficientTable | None = None,
+    announce: Announce = lambda _text: None,
+    workers: int | None = None,
+) -> tuple[Path, list[str]]:
+    """Write orbits with what surrounds them: film, eigenvalues, stability map.
+
+    Without `table` one of the orbit's clearance is computed at some of the scenario's speeds.
+
+    Returns
+    -------
+    Path
+        The file written.
+    list of str
+        What is missing in it, and why.
+    """
+    attempt = Attempts(announce)
+    if table is None:
+        table = attempt("coefficients", lambda: _surrounding_table(scenario, workers), None)
+    if table is None:
+        return record(orbits, path, title=scenario.title), attempt.problems
+    results = compute(scenario, (), table, announce, orbits)
+    return write_recording_of(results, path), [*attempt.problems, *results.problems]
+
+
+def _surrounding_table(scenario: Scenario, workers: int | None = None) -> CoefficientTable:
+    """Table of the orbit's clearance at up to `SURROUNDING_SPEEDS` of the scenario's speeds."""
+    from ..study.sweep import tabulate
+
+    speeds, settings = scenario.speeds, orbit_settings(scenario)[0]
+    count = min(speeds.size, SURROUNDING_SPEEDS)
+    chosen = np.unique(np.linspace(0, speeds.size - 1, count).round().astype(int))
+    one = replace(
+        scenario,
+        radial_clearances=(settings.radial_clearance,),
+        operating=replace(scenario.operating, speed=tuple(speeds[chosen].tolist())),
+    )
+    return tabulate(one, workers=workers)
+
+
+_HEATING = ("load", "friction_force", "max_pressure", "max_temperature", "critical_mass")
+
+
+def markdown_summary(results: Results) -> str:
+    """The summary of the main job as Markdown, for the recording."""
+    facts = summary(results, {})
+    counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
+    lines = [*conclusion(facts), *([f"Film points: {counted}.", ""] if counted else [])]
+    for text in late_whirl(facts["orbits"], results.curves):
+        lines += [f"{text[0].upper()}{text[1:]}.", ""]
+    for row in facts["heating"]:
+        at = f"{row['speed'] * RPM:.0f} rpm"
+        heads = " | ".join(("model", *(QUANTITIES[name].head for name in _HEATING)))
+        clearance = QUANTITIES["radial_clearance"].said(row["radial_clearance"])
+        lines += [f"## {clearance}, {at}", "", f"| {heads} |", f"|{' --- |' * (len(_HEATING) + 1)}"]
+        for model in results.scenario.thermal_models:
+            one = row.get(model.value)
+            if one is not None:
+                texts = [QUANTITIES[name].text(one[name], 4) for name in _HEATING]
+                if one["critical_mass"] is None:
+                    texts[-1] = one["stability"] or "-"
+                lines.append(f"| {' | '.join((model.value, *texts))} |")
+        lines.append("")
+    return "\n".join([*lines, orbit_notes(results.orbits, results.orbit_rows)])
+
+
+def conclusion(facts: Mapping[str, Any]) -> list[str]:
+    """Say what the orbits at constant speed show of heating; nothing without both models."""
+    rates = {
+        row["thermal_model"]: row
+        for row in facts["orbits"]
+        if row["kind"] == "constant speed" and row["growth_rate"] is not None
+    }
+    cold, hot = rates.get("isothermal"), rates.get("thd")
+    if cold is None or hot is None:
+        return []
+    mass = "" if facts["rotor_mass"] is None else f" with {facts['rotor_mass']:.4g} kg per bearing"
+    verdicts = [
+        f"{'grows' if row['growth_rate'] > 0.0 else 'decays'} ({row['growth_rate']:+.3g} 1/s)"
+        for row in (cold, hot)
+    ]
+    lines = [
+        f"At **{hot['speed'][0] * RPM:.0f} rpm**{mass} the orbit **{verdicts[0]}** if heating is "
+        f"neglected and **{verdicts[1]}** with it.",
+        "",
+    ]
+    if cold["growth_rate"] < 0.0 < hot["growth_rate"]:
+        lines += ["The rotor that an isothermal calculation calls stable is unstable.", ""]
+    return lines
+
+
+def orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None = None) -> str:
+    """What each run shows, how it ended, and what its film force takes for granted, as Markdown.
+
+    `rows` are what `describe_orbit` says of the orbits, where that is known already.
+    """
+    rows = [describe_orbit(orbit) for orbit in orbits] if rows is None else rows
+    lines: list[str] = []
+    for orbit, name, row in zip(orbits, run_names(orbits), rows, strict=True):
+        first, last = (round(speed * RPM) for speed in row["speed"])
+        rpm = f"{first} rpm" if first == last else f"{first} to {last} rpm"
+        lines.append(
+            f"- **{run_title(name)}, {rpm}, {row['revolutions']:.4g} turns:"
+            f" {orbit.status.value.replace('_', ' ')}**"
+        )
+        lines += [f"  - {fact}" for fact in _seen(row)]
+        lines += [f"  - {orbit.message}"] if orbit.message else []
+    return "\n".join(lines)
+
+
+def _seen(row: Mapping[str, Any]) -> list[str]:
+    """What an orbit shows in numbers, a line each."""
+    facts = []
+    if row["growth_rate"] is not None:
+        word = "grow" if row["growth_rate"] > 0.0 else "decay"
+        facts.append(f"small motions {word} at {row['growth_rate']:+.4g} 1/s")
+    if row["whirl"] is not None:
+        whirl = row["whirl"]
+        facts.append(
+            f"{whirl['direction']} whirl at {whirl['order']:.4f} of the shaft's speed, ellipse"
+            f" {whirl['semi_major'] * MICRO:.4g} x {whirl['semi_minor'] * MICRO:.4g} µm"
+        )
+    if row["whirl_range"] is not None:
+        facts.append(whirl_range_text(row["whirl_range"]))
+    facts.append(
+        f"thinnest film {row['min_film'] * MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
+    )
+    return facts
