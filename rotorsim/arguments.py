@@ -33,6 +33,19 @@ def refuse_path(value: object, key: str = "scenario") -> None:
         raise InputError("must be a Scenario", key=key, value=type(value).__name__)
 
 
+def file_path(value: object) -> Path:
+    """Return the path of a file given by text or path; refuse None, open files and the like.
+
+    Raises
+    ------
+    InputError
+        `value` is neither.
+    """
+    if not isinstance(value, (str, Path)):
+        raise InputError("must be the name of a file", key="path", value=type(value).__name__)
+    return Path(value)
+
+
 def finite_number(value: Any, key: str, unit: str = "") -> float:
     """Return a finite number as a float; refuse text with a unit, None, arrays and the like.
 

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import file_path
 from ..atomic import write_text
 from ..errors import InputError, TableError
 from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
@@ -109,7 +110,7 @@ def read(path: str | Path) -> xr.Dataset:
     TableError
         With the file, and the row and column where something is wrong.
     """
-    source = Path(path)
+    source = file_path(path)
     lines, separator = _lines(_text(source), source)
     lines = _from_header(lines)
     units, rows = _units_row(lines)

@@ -11,6 +11,7 @@ import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..arguments import file_path
 from ..atomic import write_bytes
 from ..errors import TableError
 from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
@@ -66,7 +67,7 @@ def read(path: str | Path) -> xr.Dataset:
     TableError
         The file is missing, damaged, not a table, or of a newer format.
     """
-    source = Path(path)
+    source = file_path(path)
     if not os.path.lexists(source):
         raise TableError("no such file; `rotorsim table SCENARIO` makes one", source=source)
     data = read_bytes(source, _MAX_BYTES, TableError)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import finite_number
 from ..errors import TableError
 from ..status import SolveStatus
 from . import delimited, netcdf
@@ -277,12 +278,13 @@ class CoefficientTable:
             converge.
         """
         one = self.select(**choices)
-        values = one.interpolator().columns(float(speed))
+        speed = finite_number(speed, "speed", "rad/s")
+        values = one.interpolator().columns(speed)
         clearance = float(one.dataset["radial_clearance"].values[0])
         return Coefficients(
             stiffness=values[:4].reshape(2, 2),
             damping=values[4:8].reshape(2, 2),
-            speed=float(speed),
+            speed=speed,
             load=float(values[8]) if np.isfinite(values[8]) else None,
             radial_clearance=clearance if np.isfinite(clearance) else None,
             thermal_model=str(one.dataset["thermal_model"].values[0]),

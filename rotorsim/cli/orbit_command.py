@@ -12,7 +12,7 @@ import typer
 from ..errors import InputError
 from .film_commands import computed_table
 from .inputs import check_file, given_table, table_path
-from .options import ModelOption, ScenarioArgument, WorkersOption
+from .options import BearingOption, ModelOption, ScenarioArgument, WorkersOption
 from .output import DONE, INCOMPLETE, Output, as_typed
 from .progress import late_progress, progress_bar
 
@@ -31,6 +31,7 @@ def orbit(
             "--table", "-t", metavar="FILE", help="Use this table.", show_default="computed"
         ),
     ] = None,
+    bearing: BearingOption = None,
     model: ModelOption = None,
     recording: Annotated[
         Path | None,
@@ -73,7 +74,7 @@ def orbit(
     path = recording or Path("logs") / f"{scenario.stem}.rrd"
     check_file(path, ".rrd", scenario)
     _check_mp4(mp4)
-    coefficients = _coefficients(output, loaded, scenario, table, workers)
+    coefficients = _coefficients(output, loaded, scenario, table, bearing, workers)
     orbits = _simulate(output, loaded, coefficients, _models(loaded, coefficients, model), live)
     folder = Path("figures") / scenario.stem
     steady = steady or settings.steady_only
@@ -116,7 +117,12 @@ def _check_mp4(wanted: bool) -> None:
 
 
 def _coefficients(
-    output: Output, loaded: Scenario, scenario: Path, table: Path | None, workers: int | None
+    output: Output,
+    loaded: Scenario,
+    scenario: Path,
+    table: Path | None,
+    bearing: str | None,
+    workers: int | None,
 ) -> CoefficientTable | None:
     """Table for linear coefficients; a nonlinear film needs none."""
     from ..model.orbit import OrbitForce
@@ -129,7 +135,7 @@ def _coefficients(
             )
         return None
     if table is not None:
-        found = given_table(output, table)
+        found = given_table(output, table, bearing)
         differing = differences(loaded, found)
         if differing:
             output.warn(f"{table} was computed for another scenario: {', '.join(differing)} differ")

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..arguments import file_path
 from ..atomic import write_text
 from ..bearing.table import CoefficientTable
 from ..bearing.table_data import COEFFICIENTS, CONVENTIONS
@@ -148,7 +149,7 @@ def read_table(
         No such file, not readable as what its name says, several bearings and none chosen, or a
         `load_direction` for a table in the load frame or against what the file says.
     """
-    source = Path(path)
+    source = file_path(path)
     suffix = source.suffix.lower()
     if not os.path.lexists(source):
         raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)

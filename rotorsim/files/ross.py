@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import file_path
 from ..atomic import write_text
 from ..bearing.table import CoefficientTable
 from ..bearing.table_data import COEFFICIENTS, LARGEST, SIGNS
@@ -233,7 +234,7 @@ def read(
         frequency of the whirl, or that are no numbers, or a file that says another
         `load_direction`.
     """
-    source = Path(path)
+    source = file_path(path)
     entries = _entries(source)
     if not _is_ross(entries):
         raise TableError("not a bearing that ROSS saved: no entry has kxx and cxx", source=source)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arguments import file_path
 from ..errors import InputError
 from ..file_kinds import FileKind, kind_of, sentence
 from ..rotor import Rotor
@@ -43,7 +44,7 @@ def load_rotor(
     InputError
         The file cannot be read, or its matrices do not make a rotor.
     """
-    source = Path(path)
+    source = file_path(path)
     data = _read(source)
     _check_names(data, source, bearing_nodes is not None)
     if bearing_nodes is not None:

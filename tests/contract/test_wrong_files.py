@@ -148,6 +148,29 @@ def test_a_table_is_loaded_from_a_table(name: str, said: str, files: Path) -> No
     assert said in str(caught.value)
 
 
+def test_a_recording_may_begin_with_a_dash(here: CommandLine, files: Path, monkeypatch):
+    from types import SimpleNamespace
+
+    opened = []
+    launch = SimpleNamespace(started=True, message="", exit_code=0)
+    monkeypatch.setattr(
+        "rotorsim.show.recording.open_viewer", lambda path: opened.append(path) or launch
+    )
+    (files / "x.rrd").rename(files / "-x.rrd")
+    assert here("view", "--", "-x.rrd").returncode == 0
+    assert opened == [files / "-x.rrd"]
+
+
+@pytest.mark.parametrize("value", [None, {}, 5, b"x.nc", ["x.nc"]])
+def test_what_is_no_name_of_a_file_is_refused(value) -> None:
+    from rotorsim.files.formats import read_table
+    from rotorsim.files.rotors import load_rotor
+
+    for read in (read_table, load_rotor, rs.CoefficientTable.load, rs.CoefficientTable.from_csv):
+        with pytest.raises(InputError, match="path: must be the name of a file"):
+            read(value)
+
+
 def test_a_scenario_may_be_called_anything(scenario: Path) -> None:
     for suffix in (".txt", ".csv", ".nc", ""):
         scenario = scenario.rename(scenario.with_suffix(suffix))

@@ -325,7 +325,7 @@ def test_ross_loads_the_file_and_draws_the_same_campbell_diagram(tmp_path):
     assert spec.loader is not None
     script = importlib.util.module_from_spec(spec)
     source = CoefficientTable.from_csv(DATA / "ross_bearing.csv")
-    (path,) = write_table(source, "ross", tmp_path, "b")
+    (path,) = write_table(source, "ross2", tmp_path, "b")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # ROSS and what it imports warn about their own affairs
         spec.loader.exec_module(script)
