@@ -1,0 +1,150 @@
+"""Stability against destabilising cross stiffness (API 617 level I)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..threads import on_one_blas_thread
+from .branches import Modes
+from .machine import Machine, Mount
+from .modes import machine_spectrum
+from .spectrum import Eigenmodes
+from .support import cross_stiffness
+from .tracking import track_modes
+
+Array = NDArray[np.float64]
+
+_REACH = 10.0
+"""Multiple of the anticipated stiffness up to which the decrement is followed (API 617)."""
+_MOST = 1e4
+"""Multiple up to which the stiffness without decrement is searched."""
+
+
+@dataclass(frozen=True, eq=False)
+class DecrementCurve:
+    """Logarithmic decrement of the critical forward mode against destabilising stiffness.
+
+    Attributes
+    ----------
+    speed : float
+        [rad/s]
+    anticipated : float
+        Q_A, the sum over the places [N/m].
+    stiffness : (n,) array
+        Q, shared by the places as the anticipated ones are [N/m].
+    decrement, frequency : (n,) arrays
+        Of the forward mode whose decrement is least at Q_A; damped frequency [rad/s].
+    threshold : float or None
+        Q0, where the machine becomes unstable [N/m]; 0: it is without any; None: not up to 10 000
+        times the anticipated one.
+    """
+
+    speed: float
+    anticipated: float
+    stiffness: Array
+    decrement: Array
+    frequency: Array
+    threshold: float | None
+
+    @property
+    def anticipated_decrement(self) -> float:
+        """Decrement at Q_A."""
+        return float(np.interp(self.anticipated, self.stiffness, self.decrement))
+
+
+def destabilised(machine: Machine, stiffness: Mapping[int, float]) -> Machine:
+    """Machine with cross stiffnesses k_xy = -k_yx [N/m] at nodes."""
+    more = [Mount(node, cross_stiffness(q), f"Q at node {node}") for node, q in stiffness.items()]
+    return replace(machine, supports=[*machine.mounts, *more])
+
+
+@dataclass(frozen=True)
+class _OverStiffness:
+    """Modes of the machine at one speed over the destabilising stiffness."""
+
+    machine: Machine
+    speed: float
+    shares: Mapping[int, float]
+
+    def __call__(self, parameter: float, /) -> Eigenmodes | None:
+        shares = {node: share * parameter for node, share in self.shares.items()}
+        machine = destabilised(self.machine, shares)
+        return machine_spectrum(machine, np.array([self.speed]))(self.speed)
+
+
+@on_one_blas_thread
+def decrement_curve(
+    machine: Machine, speed: float, anticipated: Mapping[int, float], points: int = 21
+) -> DecrementCurve:
+    """Follow the decrement of the critical forward mode over destabilising stiffness.
+
+    Parameters
+    ----------
+    machine : Machine
+    speed : float
+        [rad/s]
+    anticipated : mapping of int to float
+        Q_A at each node [N/m].
+    points : int
+        Of the curve, from 0 to ten times the anticipated stiffness or just beyond Q0.
+
+    Raises
+    ------
+    InputError
+        The anticipated stiffness is not above 0, or the machine has no forward mode.
+    """
+    total = sum(anticipated.values())
+    if not (math.isfinite(total) and total > 0.0 and min(anticipated.values()) >= 0.0):
+        raise InputError(
+            "must be above 0 (N/m)", key="lateral.destabilising_stiffness", value=total
+        )
+    spectrum = _OverStiffness(machine, speed, {n: q / total for n, q in anticipated.items()})
+    threshold = _threshold(spectrum, total)
+    reach = _REACH * total
+    if threshold is not None:
+        reach = max(min(reach, 1.2 * threshold), 1.2 * total)
+    values = np.union1d(np.linspace(0.0, reach, points), [total])
+    branches = replace(track_modes(spectrum, values), planes=machine.rotor.planes).oscillating()
+    branch = _critical_branch(branches, int(np.searchsorted(values, total)))
+    return DecrementCurve(
+        speed, total, values, branches.logarithmic_decrement[:, branch],
+        branches.damped_frequency[:, branch], threshold,
+    )  # fmt: skip
+
+
+def _critical_branch(branches: Modes, at: int) -> int:
+    """Branch of least decrement among those that whirl forward at one of the values."""
+    decrement = np.where(
+        branches.whirl[at] == "forward", branches.logarithmic_decrement[at], np.inf
+    )
+    if not np.isfinite(decrement).any():
+        raise InputError("the machine has no forward mode that oscillates", key="speed")
+    return int(np.nanargmin(decrement))
+
+
+def _threshold(spectrum: _OverStiffness, first: float) -> float | None:
+    """Stiffness at which the least stable mode's growth rate passes 0."""
+    from scipy.optimize import brentq
+
+    def growth(stiffness: float) -> float:
+        found = spectrum(stiffness)
+        if found is None:
+            raise InputError("a support has no coefficients here", key="speed")
+        return found.leading.real
+
+    if growth(0.0) > 0.0:
+        return 0.0
+    low, high = 0.0, first
+    while not growth(high) > 0.0:
+        low, high = high, 2.0 * high
+        if high > _MOST * first:
+            return None
+    options: dict[str, Any] = {"xtol": 1e-12 * high, "rtol": 1e-12}
+    return float(brentq(growth, low, high, **options))  # type: ignore[arg-type]
