@@ -154,7 +154,7 @@ def test_a_recording_may_begin_with_a_dash(here: CommandLine, files: Path, monke
     opened = []
     launch = SimpleNamespace(started=True, message="", exit_code=0)
     monkeypatch.setattr(
-        "rotorsim.show.recording.open_viewer", lambda path: opened.append(path) or launch
+        "rotorsim.show.viewer.open_viewer", lambda path: opened.append(path) or launch
     )
     (files / "x.rrd").rename(files / "-x.rrd")
     assert here("view", "--", "-x.rrd").returncode == 0
