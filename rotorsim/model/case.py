@@ -35,8 +35,8 @@ class Case:
         target, bearing = self.target, self.bearing
         key = "load" if isinstance(target, LoadTarget) else "eccentricity_ratio"
         said = ""
-        in_a_bore = isinstance(target, EccentricityTarget) and not bearing.pads
-        if in_a_bore and not target.eccentricity_ratio < 1.0:
+        beyond = isinstance(target, EccentricityTarget) and not target.eccentricity_ratio < 1.0
+        if beyond and not bearing.pads:
             said = "must lie between 0 and 1, 1 excluded"
         if is_unloaded(target):
             said = _centred(bearing, self.film, key)

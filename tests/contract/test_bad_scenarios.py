@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from pathlib import Path
 
@@ -422,6 +423,29 @@ def test_missing_folder(tmp_path: Path) -> None:
 
 def test_directory(tmp_path: Path) -> None:
     assert "is a directory" in refused(tmp_path)
+
+
+def test_pipe(tmp_path: Path) -> None:
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("there are no named pipes here")
+    os.mkfifo(tmp_path / "case.toml")
+    assert "is no ordinary file" in refused(tmp_path / "case.toml")
+
+
+def test_overlong_name(tmp_path: Path) -> None:
+    assert "cannot be read" in refused(tmp_path / ("x" * 300 + ".toml"))
+
+
+def test_folder_without_search_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path, stat = write(tmp_path, "test", "test"), Path.stat
+
+    def denied(self: Path, **options: bool) -> os.stat_result:
+        if tmp_path in self.parents:
+            raise PermissionError(13, "Permission denied", str(self))
+        return stat(self, **options)
+
+    monkeypatch.setattr(Path, "stat", denied)
+    assert "Permission denied" in refused(path)
 
 
 def test_impossible_path() -> None:

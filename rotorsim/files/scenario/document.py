@@ -28,6 +28,8 @@ def read_text(path: str | Path) -> str:
     try:
         if path.is_dir():
             raise ScenarioError("is a directory; give a scenario file (.toml)", source=path)
+        if path.exists() and not path.is_file():
+            raise ScenarioError("is no ordinary file", source=path)
         if not path.is_file():
             raise ScenarioError(f"no such file{_similar(path)}", source=path)
         with path.open("rb") as file:
