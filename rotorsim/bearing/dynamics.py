@@ -16,7 +16,9 @@ matrices.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +31,7 @@ from ..film.solution import FilmSolution
 from ..model import Bearing, pad_inertia
 from ..status import Stability
 from .operating_point import FrequencyCoefficients, FullCoefficients, condensed
+from .stored_oil import FrequencyScan
 from .whirl import WhirlThreshold, rigid_threshold, routh_coefficients
 
 Array = NDArray[np.float64]
@@ -40,10 +43,8 @@ DEFAULT_RATIO = 0.5
 """Whirl over shaft frequency at which coefficients are stated where there is no threshold."""
 NOTICEABLE = 0.01
 """Change of K + i nu C by stored oil, relative to it, from which on points warn."""
-_RATIOS = np.linspace(0.1, 1.3, 13)
-"""Among which the threshold's whirl frequency ratio is sought."""
 _PAD_RATIOS = np.geomspace(0.02, 20.0, 181)
-"""The same with pads, whose own motion may lose its damping at other frequencies."""
+"""Among which the threshold's whirl frequency ratio is sought with pads."""
 _RATIO_TOLERANCE = 1e-9
 _NOTHING = 1e-9
 """Change of the stiffness by stored oil, relative to it, that counts as none."""
@@ -111,8 +112,17 @@ class FilmDynamics:
             return *self.coefficients(1.0), 1.0
         if self.stored_oil is None:
             return self.stiffness, self.damping, None
-        ratio = self.threshold_ratio() or DEFAULT_RATIO
+        ratio = self._oil_threshold[1] or DEFAULT_RATIO
         return *self.coefficients(ratio), ratio
+
+    @cached_property
+    def oil_scan(self) -> FrequencyScan:
+        """A(i nu) of a film that stores oil, over the whirl frequency."""
+        return FrequencyScan.of(self.reduced, self.speed)
+
+    @cached_property
+    def _oil_threshold(self) -> tuple[Stability, float | None]:
+        return self.oil_scan.threshold()
 
     def coefficients(self, frequency_ratio: float) -> tuple[Array, Array]:
         """Return the journal's K [N/m] and C [N s/m] at a whirl over shaft frequency above zero."""
@@ -140,9 +150,17 @@ class FilmDynamics:
         """
         if not self.has_pads:
             stiffness, damping, _ = self.stated_coefficients()
-            return rigid_threshold(
-                stiffness, damping, self.speed, load=load, radial_clearance=radial_clearance
-            )
+            if self.stored_oil is None:
+                return rigid_threshold(
+                    stiffness, damping, self.speed, load=load, radial_clearance=radial_clearance
+                )
+            verdict, ratio = self._oil_threshold
+            if ratio is None:
+                return WhirlThreshold(verdict)
+            whirl = ratio * self.speed
+            mass = float(routh_coefficients(stiffness, damping).equivalent_stiffness) / whirl**2
+            scale = radial_clearance * self.speed**2 / load
+            return WhirlThreshold(verdict, mass, whirl, ratio, mass * scale)
         crossings = self._crossings()
         below = 0.5 * crossings[0][0] if crossings else load / STANDARD_GRAVITY
         stable = bool(np.max(_pad_eigenvalues(self, below).real) < 0.0)
@@ -178,21 +196,6 @@ class FilmDynamics:
             if real.real > 1e6 * abs(real.imag):
                 found.append((float(real.real) / (ratio * self.speed) ** 2, ratio))
         return sorted(found)
-
-    def threshold_ratio(self) -> float | None:
-        """Return the whirl frequency ratio at the rigid rotor's threshold; None without one.
-
-        Of several, that of the smallest critical mass.
-        """
-        values = [self._threshold_misfit(ratio) for ratio in _RATIOS]
-        found: list[tuple[float, float]] = []
-        for i in np.flatnonzero(np.diff(np.sign(values)) != 0):
-            bracket = float(_RATIOS[i]), float(_RATIOS[i + 1])
-            ratio = float(brentq(self._threshold_misfit, *bracket, xtol=_RATIO_TOLERANCE))  # type: ignore[arg-type]
-            threshold = rigid_threshold(*self.coefficients(ratio), self.speed)
-            if threshold.critical_mass is not None and threshold.stability is Stability.THRESHOLD:
-                found.append((threshold.critical_mass, ratio))
-        return min(found)[1] if found else None
 
     def _threshold_misfit(self, ratio: float) -> float:
         """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold."""
@@ -360,26 +363,21 @@ def stored_oil_warnings(
 
 
 def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
-    """Return the least damped eigenvalues [1/s] of a rigid rotor of `mass` per bearing [kg].
+    """Return the eigenvalues [1/s] of a rigid rotor of `mass` per bearing [kg].
 
-    As many as the rotor has without stored oil: each begins at an eigenvalue with the coefficients
-    at the threshold's whirl frequency and is then solved for with the full dynamics. (A film that
-    stores oil has more, which decay faster.)
+    A film that stores oil has more than the rotor: up to four of the least damped pairs are given.
 
     Raises
     ------
     ArithmeticError
-        An eigenvalue did not converge.
+        None was found.
     """
-    guesses = _pad_eigenvalues(dynamics, mass)
     if dynamics.stored_oil is None:
-        return guesses
-    if not dynamics.has_pads:
-        ratio = dynamics.threshold_ratio() or DEFAULT_RATIO
-        stiffness, damping = dynamics.coefficients(ratio)
-        unit = np.eye(2)
-        state = np.block([[np.zeros((2, 2)), unit], [-stiffness / mass, -damping / mass]])
-        guesses = np.linalg.eigvals(state)
+        return _pad_eigenvalues(dynamics, mass)
+    if dynamics.has_pads:
+        guesses = list(_pad_eigenvalues(dynamics, mass))
+    else:
+        guesses = [1j * nu for nu in dynamics.oil_scan.least_damped(mass)]
     inertia = np.zeros((len(dynamics.names), len(dynamics.names)))
     inertia[[0, 1], [0, 1]] = mass
 
@@ -387,9 +385,15 @@ def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
         return dynamics(s) + s * s * inertia
 
     found: list[complex] = []
-    for guess in sorted(guesses[guesses.imag >= 0.0], key=lambda s: -s.real):
-        root = refine_eigenvalue(law, guess, known=found)
-        found += [root] if abs(root.imag) <= 1e-9 * abs(root) else [root, root.conjugate()]
+    for guess in guesses:
+        if guess.imag < 0.0:
+            continue
+        with suppress(ArithmeticError):
+            root = refine_eigenvalue(law, guess, known=found)
+            real = abs(root.imag) <= 1e-9 * abs(root)
+            found += [complex(root.real)] if real else [root, root.conjugate()]
+    if not found:
+        raise ArithmeticError(f"no eigenvalue was found for {mass:.6g} kg")
     return np.array(found)
 
 

@@ -145,11 +145,10 @@ def operating_point(
     )
     threshold = synchronous = None
     if finite and status in _WITH_NUMBERS:
-        threshold = synchronous = rigid_threshold(
+        threshold = dynamics.threshold(load=load, radial_clearance=clearance)
+        synchronous = rigid_threshold(
             stiffness, damping, speed, load=load, radial_clearance=clearance
         )
-        if dynamics.has_pads:
-            threshold = dynamics.threshold(load=load, radial_clearance=clearance)
     elif not finite and status in _WITH_NUMBERS:
         status, message = SolveStatus.FAILED, message or "the solution is not finite"
     mean_viscosity = float(case.lubricant.viscosity(mean)) if math.isfinite(mean) else None

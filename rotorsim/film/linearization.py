@@ -135,8 +135,13 @@ class DynamicStiffness:
         """Return A(s) [N/m], (q, q), film frame."""
         blocks = []
         for motions, sources in zip(self._motions, self._sources, strict=True):
-            factor = self._rupture.dynamic_factor(motions.factor, s * self._volume)
-            moved, moving = np.split(motions.reaction(sources, factor), 2, axis=1)
+            factor, weight = self._rupture.dynamic_factor(motions.factor, s * self._volume)
+            if weight is None:
+                reaction = motions.reaction(sources, factor)
+            else:
+                reaction = motions.reaction(sources * np.real(weight), factor)
+                reaction = reaction + 1j * motions.reaction(sources * np.imag(weight), factor)
+            moved, moving = np.split(reaction, 2, axis=1)
             blocks.append(moved + s * moving)
         return np.asarray(block_diag(*blocks))
 

@@ -16,10 +16,12 @@ from scipy.optimize import root_scalar
 
 from rotorsim.bearing.dynamics import film_dynamics, refine_eigenvalue, rigid_eigenvalues
 from rotorsim.bearing.solve import solve_case
+from rotorsim.bearing.stored_oil import FrequencyScan
 from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.film.linearization import DynamicStiffness, linearize
 from rotorsim.film.solution import solve_film
-from rotorsim.model import Cavitation, EccentricityTarget
+from rotorsim.model import Cavitation, EccentricityTarget, LoadTarget
+from rotorsim.status import Stability
 from tests.verification.test_film_mass_conserving import (
     CLEARANCE,
     RADIUS,
@@ -57,8 +59,7 @@ def second():
 
 def threshold(dynamics):
     """Critical mass [kg] and whirl frequency [rad/s]."""
-    stiffness, damping = dynamics.coefficients(dynamics.threshold_ratio())
-    found = rigid_threshold(stiffness, damping, SPEED)
+    found = dynamics.threshold(load=1.0, radial_clearance=1.0)
     assert found.critical_mass is not None
     assert found.whirl_frequency is not None
     return found.critical_mass, found.whirl_frequency
@@ -127,6 +128,43 @@ def test_eigenvalues_change_sides_at_the_critical_mass(film, share, sign):
     for s in eigenvalues:
         matrix = dynamics(s) + mass * s**2 * NO_TURN
         assert np.linalg.cond(matrix) > 1e6
+
+
+def test_eigenvalues_on_the_right_are_counted_between_several_thresholds():
+    """One groove of full length ahead of the load: the delayed film feeds several modes."""
+    case = grooved(LoadTarget(20e3), center=45.0, extent=20.0, mesh=(120, 20))
+    dynamics = film_dynamics(solve_film(case, 100.0 * math.pi), NO_TURN)
+    found = dynamics.threshold(load=20e3, radial_clearance=CLEARANCE)
+    assert found.stability is Stability.THRESHOLD
+    assert found.critical_mass is not None
+    counts = []
+    for share in (0.3, 0.98, 1.02, 2.0, 5.0):
+        mass = share * found.critical_mass
+        eigenvalues = rigid_eigenvalues(dynamics, mass)
+        counts.append(dynamics.oil_scan.unstable_eigenvalues(mass))
+        assert counts[-1] == np.sum(eigenvalues.real > 0.0)
+    assert counts == [0, 0, 2, 4, 2]
+
+
+def test_a_film_without_delay_is_counted_as_the_polynomial_has_it():
+    stiffness, damping = np.array([[2.0, 3.0], [-3.0, 2.0]]), np.diag([1.0, 1.2])
+    scan = FrequencyScan.of(lambda s: stiffness + s * damping, 4.0)
+    exact = rigid_threshold(stiffness, damping, 4.0)
+    verdict, ratio = scan.threshold()
+    assert verdict is exact.stability is Stability.THRESHOLD
+    assert ratio == pytest.approx(exact.whirl_frequency_ratio, rel=1e-6)
+    assert exact.critical_mass is not None
+    assert scan.unstable_eigenvalues(0.5 * exact.critical_mass) == 0
+    assert scan.unstable_eigenvalues(2.0 * exact.critical_mass) == 2
+
+
+def test_delayed_feedback_converges_with_the_mesh():
+    """Transport within a cell is exact: a sixteenth of the cells moves the threshold by 3 %."""
+    masses = []
+    for mesh in ((60, 10), (240, 40)):
+        case = grooved(LoadTarget(20e3), center=45.0, extent=20.0, mesh=mesh)
+        masses.append(threshold(film_dynamics(solve_film(case, 100.0 * math.pi), NO_TURN))[0])
+    assert masses[0] == pytest.approx(masses[1], rel=0.03)
 
 
 def test_a_full_length_groove_where_the_film_forms_again_leaves_nothing_stored():

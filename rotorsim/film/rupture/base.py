@@ -101,7 +101,9 @@ class RuptureCondition(Protocol):
         """Return the area of each cell in which oil is squeezed when the film thins [m2]."""
         ...
 
-    def dynamic_factor(self, factor: Factor, rate: NDArray[Any]) -> Factor:
+    def dynamic_factor(
+        self, factor: Factor, rate: NDArray[Any]
+    ) -> tuple[Factor, NDArray[Any] | None]:
         """Return the factor of the film that moves as exp(s t).
 
         Parameters
@@ -111,6 +113,12 @@ class RuptureCondition(Protocol):
         rate : (n, m) complex array
             s times the volume of each cell [m3/s]; ruptured cells whose content may change store
             as much for each unit of liquid fraction.
+
+        Returns
+        -------
+        Factor
+        (n, m) complex array or None
+            By which the right-hand sides are to be multiplied; None: by one.
         """
         ...
 
@@ -130,10 +138,12 @@ class ConnectedFilm:
         del solution
         return operator.area
 
-    def dynamic_factor(self, factor: Factor, rate: NDArray[Any]) -> Factor:
+    def dynamic_factor(
+        self, factor: Factor, rate: NDArray[Any]
+    ) -> tuple[Factor, NDArray[Any] | None]:
         """Return the factor of the film at rest: nothing is stored."""
         del rate
-        return factor
+        return factor, None
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor `operator` on the solution's full cells."""

@@ -71,18 +71,35 @@ class MixedFactor:
     def _solvers(self):
         return _BAND_SOLVERS[complex if np.iscomplexobj(self.matrix) else float]
 
-    def with_stored_oil(self, rate: NDArray[Any]) -> MixedFactor:
+    def with_stored_oil(self, rate: NDArray[Any]) -> tuple[MixedFactor, NDArray[Any]]:
         """Factor the system of a motion exp(s t), in which the ruptured cells store oil.
+
+        The liquid fraction crosses a ruptured cell in tau, its volume over the flow through it, so
+        that exp(-s tau) of what came in leaves. (All of the cell changing at once, 1 + s tau for
+        exp(s tau), would spread out what is carried far.)
 
         Parameters
         ----------
         rate : (n, m) complex array
             s times the volume of each cell [m3/s].
+
+        Returns
+        -------
+        MixedFactor
+        (n, m) complex array
+            Weight of what is added to each cell's continuity: of sources spread over a ruptured
+            cell, (exp(s tau) - 1)/(s tau).
         """
         matrix = self.matrix.astype(complex)
-        stored = np.where(self.film & ~self.full, rate, 0.0)
+        n, m = self.full.shape
+        flow = np.empty((n, m))
+        flow[self.order] = np.real(self.matrix[2 * self.width]).reshape(n, m)
+        moving = self.film & ~self.full & (flow > 0.0) & (rate != 0.0)
+        delay = np.divide(rate, flow, out=np.zeros((n, m), dtype=complex), where=moving)
+        weight = np.divide(np.expm1(delay), delay, out=np.ones_like(delay), where=moving)
+        stored = np.where(moving, rate * weight, 0.0)
         matrix[2 * self.width] += stored[self.order].ravel()
-        return replace(self, matrix=matrix)
+        return replace(self, matrix=matrix), weight
 
     def solve(self, right: Array) -> NDArray[Any]:
         """Solve for (..., n, m) right-hand sides [m3/s]."""
@@ -124,7 +141,9 @@ class MassConserving:
         assert solution.liquid is not None
         return solution.liquid * operator.area
 
-    def dynamic_factor(self, factor: Factor, rate: NDArray[Any]) -> Factor:
+    def dynamic_factor(
+        self, factor: Factor, rate: NDArray[Any]
+    ) -> tuple[Factor, NDArray[Any] | None]:
         """Return the factor with the oil that the ruptured cells store and give back."""
         assert isinstance(factor, MixedFactor)
         return factor.with_stored_oil(rate)
