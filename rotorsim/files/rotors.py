@@ -17,6 +17,8 @@ from .arrays import read_arrays
 
 _OWN_KINDS = (None, FileKind.NUMPY, FileKind.MATLAB)
 _MOST_NODES = 1e6
+_LEAST_MASS = 1e-20
+"""On the diagonal [kg, kg m^2]; below, accelerations would overflow."""
 _KNOWN = ("M", "D", "C", "G", "K", "H", "bearing_nodes", "dofs_per_node")
 _KNOWN_WORDS = "M, D or C (damping), G, K, H (circulatory), bearing_nodes, dofs_per_node"
 
@@ -66,6 +68,12 @@ def load_rotor(
                     "must be whole numbers", source=source, key=f"{key}, column {position}",
                     value=float(value),
                 )  # fmt: skip
+    smallest = np.abs(np.diagonal(np.atleast_2d(given["M"]))).min(initial=1.0)
+    if 0.0 < smallest < _LEAST_MASS:
+        raise InputError(
+            f"is below every sensible mass ({_LEAST_MASS:g})", source=source, key="M",
+            value=float(smallest),
+        )  # fmt: skip
     return Rotor.from_matrices(
         given["M"], given["K"], given.get("D"), given.get("G"), given.get("H"),
         bearing_nodes=[int(v) for v in nodes], unknowns_per_node=int(per_node), source=str(source),
