@@ -207,6 +207,10 @@ def static_equilibrium(
     displacement[free] = inner[:, -1] - inner[:, :-1] @ displacement[held]
     residual = float(np.abs(off).max()) / total
     return StaticEquilibrium(
-        tuple(nodes), np.asarray(loads, dtype=float).reshape(-1, 2), journal.reshape(-1, 2), displacement,
-        converged=residual < TOLERANCE, residual=residual,
-    )  # fmt: skip
+        nodes=tuple(nodes),
+        reactions=np.asarray(loads, dtype=float).reshape(-1, 2),
+        journal=journal.reshape(-1, 2),
+        displacement=displacement,
+        converged=residual < TOLERANCE,
+        residual=residual,
+    )

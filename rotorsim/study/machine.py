@@ -1,0 +1,576 @@
+"""A machine over its speeds: static loads, each bearing at its own, modes, thresholds, verdict."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bearing.interpolation import CoefficientInterpolator
+from ..bearing.operating_point import OperatingPoint
+from ..errors import InputError
+from ..files.machine import MachineFile
+from ..files.scenario import Scenario
+from ..machine.branches import Modes, Verdict
+from ..machine.machine import Machine, Mount
+from ..machine.modes import known_speeds, machine_spectrum, modes
+from ..machine.response import UnbalanceResponse, unbalance_response
+from ..machine.statics import Law, StaticEquilibrium, static_equilibrium, weight
+from ..machine.support import ConstantSupport, Pedestal, Support, TableSupport, Turned
+from ..machine.thresholds import (
+    CriticalSpeed,
+    ThresholdSpeed,
+    critical_speeds,
+    find_thresholds,
+    subdivided,
+)
+from ..model import Case, LoadTarget, ThermalModel
+from ..model.machine import Matrix, SealEntry, SupportEntry
+from ..rotor import Rotor
+from ..rotor.beam import nearest_node
+from .sweep import Progress, sweep_points
+
+Array = NDArray[np.float64]
+
+GIVEN = "given"
+"""Name of the thermal model of a machine without films."""
+_SUBDIVISIONS = 4
+"""Of every interval of speeds, where thresholds are looked for."""
+
+
+@dataclass(frozen=True, eq=False)
+class SupportState:
+    """A support over the speeds.
+
+    Attributes
+    ----------
+    name : str
+    load : (n, 2) array
+        Static load along x and y of the machine [N]; NaN where it was not asked for.
+    points : tuple of OperatingPoint
+        Of a film, one for each speed; empty for others.
+    """
+
+    name: str
+    load: Array
+    points: tuple[OperatingPoint, ...] = ()
+
+    @property
+    def direction(self) -> Array:
+        """Angle of the load from x in the direction of rotation, (n,) [rad]."""
+        return np.arctan2(self.load[:, 1], self.load[:, 0])
+
+
+@dataclass(frozen=True, eq=False)
+class MachineResult:
+    """A machine with one thermal model of its films.
+
+    Attributes
+    ----------
+    description : MachineFile
+    thermal_model : str
+        ``isothermal``, ``thd``, or ``given`` without films.
+    speeds : (n,) array
+        [rad/s]
+    machine : Machine
+    supports : tuple of SupportState
+    statics : tuple of StaticEquilibrium
+        One for each speed; empty where no support needs the static load.
+    """
+
+    description: MachineFile
+    thermal_model: str
+    speeds: Array
+    machine: Machine
+    supports: tuple[SupportState, ...]
+    statics: tuple[StaticEquilibrium, ...] = ()
+
+    @property
+    def converged(self) -> bool:
+        """Whether every film and every static equilibrium did."""
+        points = [point for support in self.supports for point in support.points]
+        return all(p.converged for p in points) and all(one.converged for one in self.statics)
+
+    @cached_property
+    def known(self) -> Array:
+        """Longest run of the speeds [rad/s] at which all supports have coefficients."""
+        return known_speeds(self.machine) if self.machine.speeds.size else self.speeds
+
+    @cached_property
+    def modes(self) -> Modes | None:
+        """Branches over the known speeds; None without any."""
+        return modes(self.machine, self.known) if self.known.size else None
+
+    @cached_property
+    def critical_speeds(self) -> list[CriticalSpeed]:
+        """Synchronous crossings of the damped natural frequencies."""
+        return [] if self.modes is None else critical_speeds(self.machine, self.modes)
+
+    @cached_property
+    def thresholds(self) -> list[ThresholdSpeed]:
+        """Speeds at which the verdict changes."""
+        if self.known.size < 2:
+            return []
+        grid = subdivided(self.known, _SUBDIVISIONS)
+        return find_thresholds(machine_spectrum(self.machine, self.known), grid)
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """At the highest known speed."""
+        return None if self.modes is None else self.modes.verdicts[-1]
+
+    @cached_property
+    def unbalance_response(self) -> UnbalanceResponse | None:
+        """Over the known speeds; None without unbalance or coefficients."""
+        if not (np.any(self.machine.rotor.unbalance) and self.known.size):
+            return None
+        return unbalance_response(self.machine, self.known)
+
+
+@dataclass(frozen=True, eq=False)
+class HeatedMode:
+    """A mode that heating makes unstable at the highest speed.
+
+    Attributes
+    ----------
+    frequency : float
+        Damped, with heating [rad/s].
+    isothermal_growth_rate, growth_rate : float
+        Without and with heating [1/s].
+    """
+
+    frequency: float
+    isothermal_growth_rate: float
+    growth_rate: float
+
+
+def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[HeatedMode]:
+    """Modes that grow with heating at the highest common speed and do not without.
+
+    A mode's isothermal counterpart is the one of nearest shape (MAC) and frequency.
+    """
+    if cold.modes is None or hot.modes is None:
+        return []
+    common = np.intersect1d(cold.known, hot.known)
+    if not common.size:
+        return []
+    top = float(common[-1])
+    one, other = modes(cold.machine, top).oscillating(), modes(hot.machine, top).oscillating()
+    found = []
+    for k in range(other.eigenvalues.shape[1]):
+        if other.undamped[0, k] or other.growth_rate[0, k] <= 0.0:
+            continue
+        size = one.shapes.shape[2]
+        mac = np.abs(one.shapes[0].conj() @ other.shapes[0, k, :size]) ** 2
+        apart = np.abs(one.eigenvalues[0].imag - other.eigenvalues[0, k].imag)
+        twin = int(np.argmin(apart / abs(other.eigenvalues[0, k]) + 1.0 - mac))
+        before = float(one.growth_rate[0, twin])
+        if before <= 0.0 or one.undamped[0, twin]:
+            after = float(other.growth_rate[0, k])
+            found.append(HeatedMode(float(other.damped_frequency[0, k]), before, after))
+    return found
+
+
+def analyse_machine(
+    description: MachineFile,
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> dict[str, MachineResult]:
+    """Solve a machine over its speeds with each thermal model of its bearings.
+
+    Parameters
+    ----------
+    description : MachineFile
+    workers : int, optional
+        Processes for the films; see `rotorsim.tabulate`.
+    progress : callable, optional
+        Called after each film point with points done, points in all, and the point.
+
+    Returns
+    -------
+    dict of str to MachineResult
+        By thermal model, ``isothermal`` first.
+
+    Raises
+    ------
+    InputError
+        The rotor needs static loads and has no two supports that carry them, or a support that
+        carries load has no stiffness.
+    """
+    names = {str(model) for one in description.bearings.values() for model in one.thermal_models}
+    ordered = [str(model) for model in ThermalModel if str(model) in names] or [GIVEN]
+    rotor = description.rotor_with_unbalance()
+    total = len(ordered) * len(description.bearings) * len(description.operating.speeds)
+    done = 0
+
+    def counted(_done: int, _total: int, point: OperatingPoint) -> None:
+        nonlocal done
+        done += 1
+        if progress is not None:
+            progress(done, total, point)
+
+    return {
+        name: _Analysis(description, rotor, name, workers, counted).result() for name in ordered
+    }
+
+
+class _Analysis:
+    """One machine with one thermal model."""
+
+    def __init__(
+        self, description: MachineFile, rotor: Rotor, model: str, workers: int | None,
+        progress: Progress,
+    ) -> None:  # fmt: skip
+        self.description, self.rotor, self.model = description, rotor, model
+        self.workers, self.progress = workers, progress
+        self.speeds = np.array(description.operating.speeds)
+        positions = np.array([node.position for node in rotor.nodes])
+        self.nodes = [nearest_node(positions, entry.at) for entry in description.support]
+        self.seal_nodes = [nearest_node(positions, entry.at) for entry in description.seal]
+        self.positions = positions
+
+    def result(self) -> MachineResult:
+        """Statics, films, supports."""
+        names = self.description.support_names
+        loads, points, statics = self._loads_and_points()
+        states = tuple(
+            SupportState(name, loads[:, i], points.get(name, ())) for i, name in enumerate(names)
+        )
+        mounts = [
+            Mount(node, self._support(entry, state), name)
+            for node, entry, state, name in zip(
+                self.nodes, self.description.support, states, names, strict=True
+            )
+        ]
+        mounts += [
+            Mount(node, _seal(entry, self.description, name), name)
+            for node, entry, name in zip(
+                self.seal_nodes, self.description.seal, self.description.seal_names, strict=True
+            )
+        ]
+        return MachineResult(
+            self.description, self.model, self.speeds, Machine(self.rotor, mounts), states,
+            tuple(statics),
+        )  # fmt: skip
+
+    def _force(self, speed: float) -> Array:
+        """Static forces on the rotor's unknowns at a speed [N]."""
+        force = np.zeros(self.rotor.size)
+        if not self.description.operating.vertical:
+            force += weight(self.rotor)
+        for entry in self.description.load:
+            rows = np.array(entry.force)
+            node = nearest_node(self.positions, entry.at)
+            for axis in (0, 1):
+                force[self.rotor.planes[node][axis]] += np.interp(
+                    speed, rows[:, 0], rows[:, axis + 1]
+                )
+        return force
+
+    def _loads_and_points(
+        self,
+    ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
+        """Static loads (n_speed, n_supports, 2), the films' points, and the equilibria."""
+        description, count = self.description, len(self.nodes)
+        loads = np.full((self.speeds.size, count, 2), np.nan)
+        if not (description.bearings or any(e.coefficients for e in description.support)):
+            return loads, {}, []
+        if count == 2:
+            return self._determinate(loads)
+        return self._indeterminate(loads)
+
+    def _determinate(
+        self, loads: Array
+    ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
+        """Two supports: their loads follow from statics, then each film is a sweep of its own."""
+        raised, unmoved = self._elevations(), _displaced(np.zeros(2))
+        for k, speed in enumerate(self.speeds):
+            force, laws = self._force(float(speed)), [unmoved, unmoved]
+            loads[k] = static_equilibrium(self.rotor, force, self.nodes, laws, raised).reactions
+        points: dict[str, tuple[OperatingPoint, ...]] = {}
+        films = [
+            (i, name, self.description.bearings[name])
+            for i, name in enumerate(self.description.support_names)
+            if name in self.description.bearings
+        ]
+        alike = bool(np.allclose(loads, loads[0], rtol=1e-12, atol=0.0))
+        if alike:
+            cases = [self._case(i, scenario, loads[0, i]) for i, _, scenario in films]
+            found = sweep_points(
+                cases, self.speeds.tolist(), workers=self.workers, progress=self.progress
+            )
+            size = self.speeds.size
+            for k, (_, name, _) in enumerate(films):
+                points[name] = tuple(found[k * size : (k + 1) * size])
+        else:
+            for i, name, scenario in films:
+                film = _Film(lambda load, i=i, s=scenario: self._case(i, s, load), self.progress)
+                points[name] = tuple(
+                    film.point(load, float(speed))
+                    for speed, load in zip(self.speeds, loads[:, i], strict=True)
+                )
+        statics = []
+        for k, speed in enumerate(self.speeds):
+            journals = [self._journal(i, k, loads, points) for i in (0, 1)]
+            laws = [_displaced(journal) for journal in journals]
+            statics.append(
+                static_equilibrium(self.rotor, self._force(float(speed)), self.nodes, laws, raised)
+            )
+        return loads, points, statics
+
+    def _journal(
+        self, i: int, k: int, loads: Array, points: dict[str, tuple[OperatingPoint, ...]]
+    ) -> Array:
+        """Displacement of a journal in its housing at speed k [m]; 0 where it is not known."""
+        film = points.get(self.description.support_names[i])
+        if film is not None:
+            return _journal_of(film[k], loads[k, i]) if film[k].converged else np.zeros(2)
+        try:
+            return self._spring(i, float(self.speeds[k]))(loads[k, i])[0]
+        except InputError:
+            return np.zeros(2)
+
+    def _indeterminate(
+        self, loads: Array
+    ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
+        """More supports: rotor and films together, at one speed after the other."""
+        names, raised = self.description.support_names, self._elevations()
+        films: dict[int, _Film] = {}
+        for i, name in enumerate(names):
+            if name in self.description.bearings:
+                scenario = self.description.bearings[name]
+                films[i] = _Film(
+                    lambda load, i=i, s=scenario: self._case(i, s, load), lambda *_: None
+                )
+        points: dict[str, list[OperatingPoint]] = {names[i]: [] for i in films}
+        statics: list[StaticEquilibrium] = []
+        start = None
+        for k, speed in enumerate(self.speeds):
+            laws = [
+                films[i].law(float(speed)) if i in films else self._spring(i, float(speed))
+                for i in range(len(names))
+            ]
+            one = static_equilibrium(
+                self.rotor, self._force(speed), self.nodes, laws, raised, start
+            )
+            start = one.reactions
+            statics.append(one)
+            loads[k] = one.reactions
+            for i, film in films.items():
+                point = film.point(one.reactions[i], float(speed))
+                points[names[i]].append(point)
+                self.progress(0, 0, point)
+        return loads, {name: tuple(found) for name, found in points.items()}, statics
+
+    def _elevations(self) -> Array:
+        """Displacements of the housings along x and y [m]; upwards is -x."""
+        return np.array([(-entry.elevation, 0.0) for entry in self.description.support])
+
+    def _case(self, i: int, scenario: Scenario, load: Array) -> Case:
+        """Film of support i under its load [N], in the load's frame."""
+        wanted = {str(model) for model in scenario.thermal_models}
+        model = self.model if self.model in wanted else str(scenario.thermal_models[0])
+        case = scenario.case(thermal_model=model)
+        turn = scenario.load_direction + self.description.support[i].angle
+        direction = math.atan2(load[1], load[0])
+        return replace(
+            case,
+            bearing=case.bearing.turned(turn - direction),
+            target=LoadTarget(float(np.hypot(*load))),
+        )
+
+    def _spring(self, i: int, speed: float) -> Law:
+        """Law of a support that is no film: a spring at the static load."""
+        entry = self.description.support[i]
+        if entry.stiffness is not None:
+            own = np.array(entry.stiffness)
+        else:
+            table = self.description.tables[self.description.support_names[i]]
+            own = table.interpolator()(speed, gaps="nan")[0]
+        turn = _rotation(entry.angle)
+        matrix = turn @ own @ turn.T
+        if not np.all(np.isfinite(matrix)) or np.linalg.cond(matrix) > 1e12:
+            raise InputError(
+                "is singular: with more than two supports each needs stiffness along x and y to "
+                "share the static load", key=f"support[{i}].stiffness", value=own.tolist(),
+            )  # fmt: skip
+        softness = np.asarray(np.linalg.inv(matrix), dtype=float)
+        return lambda load: (np.asarray(softness @ load, dtype=float), softness)
+
+    def _support(self, entry: SupportEntry, state: SupportState) -> Support:
+        """Support in the machine's frame, pedestal included."""
+        support: Support
+        if entry.bearing is not None:
+            support = _film_support(self.speeds, state)
+        elif entry.coefficients is not None:
+            direction = state.direction[0] if np.all(np.isfinite(state.load)) else 0.0
+            table = TableSupport(self.description.tables[state.name].interpolator())
+            support = Turned(table, float(direction) + entry.angle)
+        else:
+            support = ConstantSupport(
+                _matrix(entry.stiffness), _matrix(entry.damping), _matrix(entry.mass)
+            )
+            support = Turned(support, entry.angle) if entry.angle else support
+        if entry.pedestal is not None:
+            stand = entry.pedestal
+            support = Pedestal(support, stand.mass, stand.stiffness, stand.damping)
+        return support
+
+
+class _Film:
+    """A film under any load, each solution the first guess of the next."""
+
+    def __init__(self, case: Callable[[Array], Case], progress: Progress) -> None:
+        self.case, self.progress = case, progress
+        self.warm: Any = None
+
+    def point(self, load: Array, speed: float) -> OperatingPoint:
+        """Operating point under a load [N]."""
+        from ..bearing.solve import solve_case
+
+        point, warm = solve_case(self.case(load), speed, initial=self.warm)
+        self.warm = warm if point.converged else None
+        self.progress(0, 0, point)
+        return point
+
+    def law(self, speed: float) -> Law:
+        """Load to the journal's displacement and its derivative, machine frame."""
+
+        def displacement(load: Array) -> tuple[Array, Array]:
+            point = self.point(load, speed)
+            if not point.converged:
+                return np.full(2, np.nan), np.full((2, 2), np.nan)
+            turn = _rotation(math.atan2(load[1], load[0]))
+            return _journal_of(point, load), turn @ np.linalg.inv(point.stiffness) @ turn.T
+
+        return displacement
+
+
+def _journal_of(point: OperatingPoint, load: Array) -> Array:
+    """Displacement of the journal under a load [N] in the machine's frame [m]."""
+    angle, size = point.attitude_angle, point.eccentricity_ratio * point.radial_clearance
+    place = size * np.array([math.cos(angle), math.sin(angle)])
+    return np.asarray(_rotation(math.atan2(load[1], load[0])) @ place, dtype=float)
+
+
+def _displaced(journal: Array) -> Law:
+    """Law of a support in which the journal stands at a known place."""
+    return lambda _load: (journal, np.zeros((2, 2)))
+
+
+def _film_support(speeds: Array, state: SupportState) -> Support:
+    """Coefficients of a film's points over speed, turned to the machine's frame."""
+    columns = np.full((speeds.size, 9), np.nan)
+    converged = np.array([point.converged for point in state.points])
+    for k, (point, angle) in enumerate(zip(state.points, state.direction, strict=True)):
+        if point.converged:
+            turn = _rotation(float(angle))
+            columns[k, :4] = (turn @ point.stiffness @ turn.T).ravel()
+            columns[k, 4:8] = (turn @ point.damping @ turn.T).ravel()
+            columns[k, 8] = point.load
+    return TableSupport(CoefficientInterpolator.from_columns(speeds, converged, columns))
+
+
+def _seal(entry: SealEntry, description: MachineFile, name: str) -> Support:
+    if entry.coefficients is not None:
+        return TableSupport(description.tables[name].interpolator(), carries_load=False)
+    return ConstantSupport(
+        _matrix(entry.stiffness), _matrix(entry.damping), _matrix(entry.mass), carries_load=False
+    )
+
+
+def _matrix(given: Matrix | None) -> Array:
+    return np.zeros((2, 2)) if given is None else np.array(given)
+
+
+def _rotation(angle: float) -> Array:
+    """From a frame turned by `angle` [rad] to the machine's, (2, 2)."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]])
+
+
+def modes_at(found: Modes, index: int) -> list[dict[str, Any]]:
+    """Modes at one speed as plain data, ascending in undamped frequency.
+
+    One of each conjugate pair, and the real eigenvalues, whose frequency is 0.
+    """
+    values = found.eigenvalues[index]
+    keep = np.flatnonzero(values.imag >= 0.0)
+    keep = keep[np.argsort(np.abs(values[keep]), kind="stable")]
+    whirl, decrement = found.whirl, found.logarithmic_decrement
+    return [
+        {
+            "growth_rate": float(values[k].real),
+            "damped_frequency": abs(float(values[k].imag)),
+            "undamped_frequency": float(abs(values[k])),
+            "logarithmic_decrement": float(decrement[index, k]) if values[k].imag > 0.0 else None,
+            "whirl": str(whirl[index, k]),
+            "undamped": bool(found.undamped[index, k]),
+        }
+        for k in keep
+    ]
+
+
+def stability_document(results: dict[str, MachineResult]) -> dict[str, Any]:
+    """Stability of a machine as plain data (SI): the last thermal model's in front.
+
+    ``thermal_models`` has each model's own; ``destabilised_by_heating`` the modes that only heating
+    makes unstable.
+    """
+    rows = {name: _stability(result) for name, result in results.items()}
+    last = next(reversed(rows))
+    document = {**rows[last], "thermal_model": last}
+    if len(rows) > 1:
+        document["thermal_models"] = rows
+        cold, hot = next(iter(results.values())), results[last]
+        document["destabilised_by_heating"] = [
+            vars(mode) for mode in destabilised_by_heating(cold, hot)
+        ]
+    return document
+
+
+def _stability(result: MachineResult) -> dict[str, Any]:
+    found = result.modes
+    return {
+        "speeds": result.known.tolist(),
+        "modes": [] if found is None else [modes_at(found, i) for i in range(result.known.size)],
+        "critical_speeds": [
+            {"speed": one.speed, "whirl": one.whirl, "damping_ratio": one.damping_ratio}
+            for one in result.critical_speeds
+        ],
+        "thresholds": [
+            {
+                "speed": one.speed,
+                "whirl_frequency_ratio": one.whirl_frequency_ratio,
+                "becomes_unstable": one.becomes_unstable,
+            }
+            for one in result.thresholds
+        ],
+        "verdict": None if result.verdict is None else str(result.verdict),
+    }
+
+
+def supports_document(result: MachineResult) -> list[dict[str, Any]]:
+    """Supports of a machine as plain data (SI): load and film at each speed."""
+    return [
+        {
+            "name": state.name,
+            "speeds": result.speeds.tolist(),
+            "load": _or_none(np.hypot(*state.load.T)),
+            "load_direction": _or_none(state.direction),
+            "eccentricity_ratio": [point.eccentricity_ratio for point in state.points],
+            "max_temperature": [point.max_temperature for point in state.points],
+            "status": [point.status.value for point in state.points],
+        }
+        for state in result.supports
+    ]
+
+
+def _or_none(values: Sequence[float] | Array) -> list[float | None]:
+    return [float(value) if math.isfinite(value) else None for value in values]
