@@ -21,6 +21,7 @@ from .inputs import (
     wanted_cases,
     wanted_speeds,
 )
+from .machine_commands import check_machine, is_machine
 from .options import (
     ClearanceOption,
     LoadOption,
@@ -49,6 +50,8 @@ def check(output: Output, scenario: ScenarioArgument) -> int:
 
     Example: rotorsim check scenarios/dal.toml
     """
+    if is_machine(scenario):
+        return check_machine(output, scenario)
     from ..bearing.checks import derived_numbers, regime_warnings
     from ..bearing.drawing import drawing_numbers, drawing_warnings, heating_warnings
     from ..files.scenario import load_scenario

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from .film_commands import computed_table, report_points
 from .inputs import table_path
+from .machine_commands import is_machine, run_machine
 from .options import OutputFolder, ScenarioArgument, SchedulerOption, WorkersOption
 from .output import INCOMPLETE, Output
 
@@ -21,6 +22,8 @@ def run(
 
     Example: rotorsim run scenarios/dal.toml
     """
+    if is_machine(scenario):
+        return run_machine(output, scenario, workers)
     from ..files.scenario import load_scenario
     from ..show.job import write_results
     from ..study.main_job import compute, summary

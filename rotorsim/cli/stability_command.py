@@ -11,6 +11,7 @@ from ..errors import InputError
 from ..file_kinds import FileKind, kind_of, sentence
 from .film_commands import computed_table
 from .inputs import cluster, given_table, table_path, wanted_mass
+from .machine_commands import is_machine, machine_stability
 from .options import BearingOption, ModelOption, SchedulerOption, WorkersOption
 from .output import DONE, INCOMPLETE, Output
 from .stability_options import (
@@ -94,6 +95,9 @@ def stability(
     With --tolerances or --tolerance: what tolerances do to the threshold.
     rotorsim stability scenarios/elliptical.toml --tolerance "radial_clearance=5 um"
     """
+    if is_machine(source):
+        own = {"--mass": mass, "--rotor": rotor, "--shaft-stiffness": shaft_stiffness}
+        return machine_stability(output, source, own, workers)
     given = wanted_mass(mass)
     held = held_values(
         {Axis.SPEED: speed, Axis.LOAD: load, Axis.CLEARANCE: clearance,

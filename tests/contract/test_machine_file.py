@@ -1,0 +1,220 @@
+"""Machine files: what they describe, what is refused, statics, and the commands on them."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from command_line import CommandLine, strict
+
+from rotorsim.errors import InputError, ScenarioError
+from rotorsim.files.machine import MachineFile, is_machine, load_machine
+from rotorsim.machine.statics import GRAVITY, static_equilibrium, weight
+from rotorsim.study.machine import analyse_machine, destabilised_by_heating
+
+SHAFT = """
+title = "test rotor"
+[rotor]
+kind = "beam"
+[[rotor.section]]
+length = "1 m"
+outer_diameter = "60 mm"
+[[rotor.disc]]
+name = "wheel"
+at = "0.5 m"
+mass = "40 kg"
+polar_inertia = "0.4 kg*m^2"
+transverse_inertia = "0.25 kg*m^2"
+[[rotor.unbalance]]
+at = "0.5 m"
+grade = "G2.5"
+[operating]
+speed = { start = "1000 rpm", stop = "9000 rpm", count = 5 }
+"""
+SPRINGS = """
+[[support]]
+at = "0 mm"
+stiffness = ["20 MN/m", "15 MN/m"]
+damping = "20 kN*s/m"
+[[support]]
+name = "right"
+at = "1 m"
+stiffness = "20 MN/m"
+damping = "20 kN*s/m"
+"""
+FILM = """
+[bearing]
+journal_radius = "30 mm"
+length = "30 mm"
+radial_clearance = "60 um"
+[lubricant]
+viscosity = "0.02 Pa*s"
+density = "860 kg/m^3"
+specific_heat = "2000 J/(kg*delta_degC)"
+thermal_conductivity = "0.13 W/(m*delta_degC)"
+[film]
+mesh = { circumferential = 48, axial = 8, cross_film = 8 }
+[operating]
+speed = "3000 rpm"
+load = "1 kN"
+"""
+
+
+def machine(text: str) -> MachineFile:
+    return MachineFile.from_text(text)
+
+
+def test_grade_and_amount_of_unbalance():
+    found = machine(SHAFT + SPRINGS)
+    rotor = found.rotor_with_unbalance()
+    top = 9000.0 * np.pi / 30.0
+    assert np.abs(rotor.unbalance).sum() == pytest.approx(2.5e-3 / top * rotor.total_mass)
+    assert found.support_names == ("support 1", "right")
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        (SHAFT + SPRINGS.replace('"1 m"', '"1.2 m"'), "support[1].at"),
+        (SHAFT + SPRINGS.replace('at = "1 m"', 'at = "0 mm"'), "support[1].at"),
+        (SHAFT.replace('at = "0.5 m"\nmass', 'at = "1.5 m"\nmass') + SPRINGS, "rotor.disc.at"),
+        (SHAFT.replace('"0.4 kg*m^2"', '"-0.4 kg*m^2"') + SPRINGS, "rotor.disc[0].polar_inertia"),
+        (SHAFT + '[[support]]\nat = "0 mm"\nbearing = "none.toml"\n', "support[0].bearing"),
+        (SHAFT + '[[support]]\nat = "0 mm"\n', "support[0].bearing"),
+        (SHAFT + '[[support]]\nat = "0 mm"\nstiffness = 3e6\n', "support[0].stiffness"),
+        (SHAFT.replace("G2.5", "fine") + SPRINGS, "rotor.unbalance[0].grade"),
+        (SHAFT.replace('"60 mm"', '"60 s"') + SPRINGS, "rotor.section[0].outer_diameter"),
+        (SHAFT + SPRINGS + '[[probe]]\nat = "2 m"\n', "probe[0].at"),
+    ],
+)
+def test_bad_input_names_its_key(text, key):
+    with pytest.raises(ScenarioError) as refused:
+        machine(text)
+    assert refused.value.key == key
+
+
+def test_two_supports_share_the_weight_by_statics():
+    text = SHAFT.replace('at = "0.5 m"\nmass', 'at = "0.25 m"\nmass')
+    rotor = machine(text + SPRINGS).rotor_with_unbalance()
+    law = [lambda load: (load / 2e7, np.eye(2) / 2e7)] * 2
+    ends = [0, len(rotor.nodes) - 1]
+    found = static_equilibrium(rotor, weight(rotor), ends, law, np.zeros((2, 2)))
+    shaft = rotor.total_mass - 40.0
+    expected = GRAVITY * np.array([shaft / 2.0 + 30.0, shaft / 2.0 + 10.0])
+    assert found.reactions[:, 0] == pytest.approx(expected, rel=1e-9)
+    assert np.abs(found.reactions[:, 1]).max() < 1e-9 * expected.sum()
+
+
+def test_three_stiff_supports_take_the_loads_of_a_continuous_beam():
+    """Two equal spans under uniform load: 3/8, 10/8 and 3/8 of the load of one span."""
+    text = """
+[rotor]
+kind = "beam"
+[[rotor.section]]
+length = "4 m"
+outer_diameter = "40 mm"
+[operating]
+speed = "1000 rpm"
+[[support]]
+at = "0 m"
+stiffness = "1 MN/m"
+[[support]]
+at = "2 m"
+stiffness = "1 MN/m"
+[[support]]
+at = "4 m"
+stiffness = "1 MN/m"
+"""
+    rotor = machine(text).rotor_with_unbalance()
+    nodes = [0, len(rotor.nodes) // 2, len(rotor.nodes) - 1]
+    law = [lambda load: (load / 1e13, np.eye(2) / 1e13)] * 3
+    found = static_equilibrium(rotor, weight(rotor), nodes, law, np.zeros((3, 2)))
+    span = 0.5 * rotor.total_mass * GRAVITY
+    # Shear adds some (d/l)^2 = 4e-4.
+    expected = np.array([3.0, 10.0, 3.0]) / 8.0 * span
+    assert found.reactions[:, 0] == pytest.approx(expected, rel=2e-3)
+    assert found.converged
+    raised = np.zeros((3, 2))
+    raised[1, 0] = 1e-3  # the middle housing stands lower: downwards is +x
+    lowered = static_equilibrium(rotor, weight(rotor), nodes, law, raised)
+    bending = rotor.total_mass / 4.0 / 7830.0
+    second = bending**2 / (4.0 * np.pi)
+    stiffness = 48.0 * 207e9 * second / 4.0**3
+    change = found.reactions[1, 0] - lowered.reactions[1, 0]
+    assert change == pytest.approx(stiffness * 1e-3, rel=2e-3)
+
+
+def test_a_rotor_with_loads_needs_two_supports():
+    rotor = machine(SHAFT + SPRINGS).rotor_with_unbalance()
+    law = [lambda load: (load, np.eye(2))]
+    with pytest.raises(InputError, match="two or more"):
+        static_equilibrium(rotor, weight(rotor), [0], law, np.zeros((1, 2)))
+
+
+def test_films_carry_the_reactions_at_any_direction_of_the_load(tmp_path):
+    """A pull to one side turns the film, its coefficients included, with the load."""
+    (tmp_path / "film.toml").write_text(FILM, encoding="utf-8")
+    supports = "".join(
+        f'[[support]]\nname = "{name}"\nat = "{at}"\nbearing = "film.toml"\n'
+        for name, at in (("left", "0 mm"), ("right", "1 m"))
+    )
+    down = tmp_path / "down.toml"
+    down.write_text(SHAFT + supports, encoding="utf-8")
+    (one,) = analyse_machine(load_machine(down), workers=1).values()
+    total = one.machine.rotor.total_mass * GRAVITY
+    side = tmp_path / "side.toml"
+    pull = f'[[load]]\nat = "0.5 m"\nforce = ["0 N", "{total:.10g} N"]\n'
+    vertical = SHAFT.replace("[operating]", "[operating]\nvertical = true")
+    side.write_text(vertical + supports + pull, encoding="utf-8")
+    (other,) = analyse_machine(load_machine(side), workers=1).values()
+    assert one.converged
+    assert other.converged
+    assert np.hypot(*one.supports[0].load[0]) == pytest.approx(total / 2.0, rel=1e-6)
+    assert np.degrees(other.supports[0].direction) == pytest.approx(90.0)
+    # The rotor is isotropic: its eigenvalues do not depend on the direction of the load.
+    assert one.modes is not None
+    assert other.modes is not None
+    values = [np.sort_complex(m.eigenvalues[-1])[-6:] for m in (one.modes, other.modes)]
+    assert values[0] == pytest.approx(values[1], rel=1e-6)
+    assert destabilised_by_heating(one, one) == []
+
+
+def test_stability_and_check_know_a_machine_file(here: CommandLine, tmp_path):
+    path = tmp_path / "rotor.toml"
+    path.write_text(SHAFT + SPRINGS, encoding="utf-8")
+    assert is_machine(path)
+    done = here("check", path)
+    assert done.returncode == 0
+    assert "test rotor" in done.stdout
+    done = here("stability", path, "--json")
+    assert done.returncode == 0, done.stderr
+    found = strict(done.stdout)
+    assert found["verdict"] == "stable"
+    assert len(found["modes"]) == len(found["speeds"]) == 5
+    first = found["modes"][0][0]
+    assert {"growth_rate", "damped_frequency", "undamped_frequency", "whirl"} <= set(first)
+    frequencies = [mode["undamped_frequency"] for mode in found["modes"][0]]
+    assert frequencies == sorted(frequencies)
+    assert "NaN" not in json.dumps(found)
+    done = here("stability", path, "--mass", "3 kg")
+    assert done.returncode == 2
+    assert "--mass" in done.stderr
+
+
+def test_run_tells_supports_response_and_checks(here: CommandLine, tmp_path):
+    path = tmp_path / "rotor.toml"
+    probes = '[[probe]]\nname = "DE"\nat = "0.1 m"\nangle = "45 deg"\n'
+    text = (SHAFT + SPRINGS + probes).replace(
+        "[operating]", '[operating]\ncontinuous = ["5000 rpm", "8000 rpm"]'
+    )
+    path.write_text(text, encoding="utf-8")
+    done = here("run", path, "--json")
+    assert done.returncode == 0, done.stderr
+    found = strict(done.stdout)
+    (probe,) = found["unbalance_response"]
+    assert probe["probe"] == "DE"
+    assert len(probe["amplitude"]) == len(probe["speeds"])
+    assert max(probe["amplitude"]) > 0.0
+    assert [one["name"] for one in found["supports"]] == ["support 1", "right"]
+    assert found["lateral"]["notes"]
