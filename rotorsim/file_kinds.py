@@ -109,6 +109,17 @@ _SCENARIO_TABLE = re.compile(
 _COEFFICIENT = re.compile(rb"^[ \t]*kxx[ \t]*=", re.M)
 
 
+def is_missing(path: str | Path) -> bool:
+    """Whether there is nothing of that name; False where that cannot be told (permissions)."""
+    try:
+        os.lstat(path)
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except (OSError, ValueError):
+        return False
+    return False
+
+
 def read_bytes(path: str | Path, most: int, error: type[InputError] = InputError) -> bytes:
     """Return the contents of an ordinary file.
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import gc
 import hashlib
 import io
-import os
 import sys
 import warnings
 from pathlib import Path
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..arguments import file_path
 from ..atomic import write_bytes
 from ..errors import TableError
-from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
+from ..file_kinds import HEAD, FileKind, is_missing, read_bytes, recognise, sentence
 from .table_data import TABLE_VERSION, scenario_digest
 
 if TYPE_CHECKING:
@@ -68,7 +67,7 @@ def read(path: str | Path) -> xr.Dataset:
         The file is missing, damaged, not a table, or of a newer format.
     """
     source = file_path(path)
-    if not os.path.lexists(source):
+    if is_missing(source):
         raise TableError("no such file; `rotorsim table SCENARIO` makes one", source=source)
     data = read_bytes(source, _MAX_BYTES, TableError)
     kind = recognise(data[:HEAD], source.suffix.lower())

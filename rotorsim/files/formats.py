@@ -14,7 +14,7 @@ from ..atomic import write_text
 from ..bearing.table import CoefficientTable
 from ..bearing.table_data import COEFFICIENTS, CONVENTIONS
 from ..errors import TableError
-from ..file_kinds import SUFFIXES, FileKind, kind_of, sentence
+from ..file_kinds import SUFFIXES, FileKind, is_missing, kind_of, sentence
 from . import matlab, ross
 from .curves import RPM, Curve, curves
 
@@ -151,7 +151,7 @@ def read_table(
     """
     source = file_path(path)
     suffix = source.suffix.lower()
-    if not os.path.lexists(source):
+    if is_missing(source):
         raise TableError("no such file; `rotorsim table SCENARIO` makes a table", source=source)
     if os.path.isdir(source):
         raise TableError("is a directory; give a table", source=source)

@@ -14,7 +14,7 @@ from typing import Any
 from ..atomic import write_text
 from ..bearing.operating_point import OperatingPoint, point_from_dict, point_to_dict
 from ..errors import InputError
-from ..file_kinds import read_bytes
+from ..file_kinds import is_missing, read_bytes
 from ..model import Case
 from ..status import SolveStatus
 
@@ -97,7 +97,7 @@ class Journal:
         return points
 
     def _lines(self) -> list[str]:
-        if not os.path.lexists(self.path):
+        if is_missing(self.path):
             return []
         return read_bytes(self.path, _MAX_BYTES).decode("utf-8", errors="replace").splitlines()
 
