@@ -145,10 +145,10 @@ class PadSearch:
 
     def __init__(self, problem: FilmProblem, target: Target) -> None:
         self.whole = problem
-        self.problem = problem
+        self.problem: FilmProblem = problem
         """With the unloaded pads' films standing still."""
         self.target = target
-        self.unreachable = False
+        self.unreachable: bool = False
         self.held = False
         """Whether the journal stays where it is and only the pads move."""
         self.unloaded: frozenset[int] = frozenset()

@@ -163,11 +163,11 @@ def static_equilibrium(
     free = np.setdiff1d(np.arange(rotor.size), held)
     stiffness = rotor.stiffness
     inner = np.linalg.solve(
-        stiffness[np.ix_(free, free)],
-        np.column_stack([stiffness[np.ix_(free, held)], force[free]]),
+        stiffness[free[:, None], free],
+        np.column_stack([stiffness[free[:, None], held], force[free]]),
     )
-    condensed = stiffness[np.ix_(held, held)] - stiffness[np.ix_(held, free)] @ inner[:, :-1]
-    fixed_loads = force[held] - stiffness[np.ix_(held, free)] @ inner[:, -1]
+    condensed = stiffness[held[:, None], held] - stiffness[held[:, None], free] @ inner[:, :-1]
+    fixed_loads = force[held] - stiffness[held[:, None], free] @ inner[:, -1]
     raised = np.asarray(elevations, dtype=float).ravel()
     total = float(np.abs(force[held]).sum() + np.abs(force[free]).sum()) or 1.0
 

@@ -115,8 +115,6 @@ class Rotor:
             other.nodes, other.bearing_nodes, other.kind,
         ) and all(np.array_equal(getattr(self, n), getattr(other, n)) for n in arrays)  # fmt: skip
 
-    __hash__ = None  # type: ignore[assignment]
-
     def _label(self, name: str) -> str:
         """How a message calls a matrix: by the file's name for it where it is from a file."""
         in_file = {
