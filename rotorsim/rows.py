@@ -33,7 +33,7 @@ def number(value: float | None, digits: int = 4) -> str:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class _Quantity:
     """How a quantity is shown: the value times `factor` plus `offset`, in `unit`.
 
     Attributes
@@ -84,35 +84,37 @@ class Quantity:
 
 
 QUANTITIES = {
-    "speed": Quantity("shaft speed", "", "rpm", RPM),
-    "radial_clearance": Quantity("radial clearance", "c", "µm", 1e6),
-    "applied_load": Quantity("load per bearing", "", "kN", 1e-3),
-    "supply_temperature": Quantity("supply temperature", "T_in", "°C", 1.0, -ZERO_CELSIUS),
-    "mass": Quantity("rotor mass per bearing", "", "kg"),
-    "eccentricity_ratio": Quantity("eccentricity ratio", "ε", digits=3),
-    "attitude_angle": Quantity("attitude angle", "φ", "°", 180.0 / math.pi, digits=3),
-    "load": Quantity("load", "load", "kN", 1e-3),
-    "sommerfeld_number": Quantity("Sommerfeld number", "S"),
-    "min_film_thickness": Quantity("minimum film thickness", "h_min", "µm", 1e6, digits=3),
-    "max_pressure": Quantity("maximum pressure", "p_max", "MPa", 1e-6, digits=3),
-    "max_temperature": Quantity("maximum temperature", "T_max", "°C", 1.0, -ZERO_CELSIUS, digits=3),
-    "mean_temperature": Quantity("mean temperature", "T_mean", "°C", 1.0, -ZERO_CELSIUS, digits=3),
-    "shaft_temperature": Quantity(
+    "speed": _Quantity("shaft speed", "", "rpm", RPM),
+    "radial_clearance": _Quantity("radial clearance", "c", "µm", 1e6),
+    "applied_load": _Quantity("load per bearing", "", "kN", 1e-3),
+    "supply_temperature": _Quantity("supply temperature", "T_in", "°C", 1.0, -ZERO_CELSIUS),
+    "mass": _Quantity("rotor mass per bearing", "", "kg"),
+    "eccentricity_ratio": _Quantity("eccentricity ratio", "ε", digits=3),
+    "attitude_angle": _Quantity("attitude angle", "φ", "°", 180.0 / math.pi, digits=3),
+    "load": _Quantity("load", "load", "kN", 1e-3),
+    "sommerfeld_number": _Quantity("Sommerfeld number", "S"),
+    "min_film_thickness": _Quantity("minimum film thickness", "h_min", "µm", 1e6, digits=3),
+    "max_pressure": _Quantity("maximum pressure", "p_max", "MPa", 1e-6, digits=3),
+    "max_temperature": _Quantity(
+        "maximum temperature", "T_max", "°C", 1.0, -ZERO_CELSIUS, digits=3
+    ),
+    "mean_temperature": _Quantity("mean temperature", "T_mean", "°C", 1.0, -ZERO_CELSIUS, digits=3),
+    "shaft_temperature": _Quantity(
         "shaft temperature", "T_shaft", "°C", 1.0, -ZERO_CELSIUS, digits=3
     ),
-    "outlet_temperature": Quantity(
+    "outlet_temperature": _Quantity(
         "oil outlet temperature", "T_out", "°C", 1.0, -ZERO_CELSIUS, digits=3
     ),
-    "friction_force": Quantity("friction force", "friction", "N"),
-    "power_loss": Quantity("power loss", "loss", "kW", 1e-3),
-    "side_flow": Quantity("side flow", "side flow", "L/min", 6e4),
-    "wall_heat_share": Quantity("heat through the walls", "to walls", "%", 100.0),
-    "heat_imbalance": Quantity("heat imbalance", "imbalance", "%", 100.0, digits=2),
-    "critical_mass": Quantity("critical mass per bearing", "M_crit", "kg"),
-    "critical_mass_dimensionless": Quantity("dimensionless critical mass", "M c ω²/W"),
-    "whirl_frequency_ratio": Quantity("whirl frequency ratio", "whirl ratio", digits=3),
-    "growth_rate": Quantity("growth rate", "growth", "1/s"),
-    "threshold_speed": Quantity("threshold speed", "threshold", "rpm", RPM),
+    "friction_force": _Quantity("friction force", "friction", "N"),
+    "power_loss": _Quantity("power loss", "loss", "kW", 1e-3),
+    "side_flow": _Quantity("side flow", "side flow", "L/min", 6e4),
+    "wall_heat_share": _Quantity("heat through the walls", "to walls", "%", 100.0),
+    "heat_imbalance": _Quantity("heat imbalance", "imbalance", "%", 100.0, digits=2),
+    "critical_mass": _Quantity("critical mass per bearing", "M_crit", "kg"),
+    "critical_mass_dimensionless": _Quantity("dimensionless critical mass", "M c ω²/W"),
+    "whirl_frequency_ratio": _Quantity("whirl frequency ratio", "whirl ratio", digits=3),
+    "growth_rate": _Quantity("growth rate", "growth", "1/s"),
+    "threshold_speed": _Quantity("threshold speed", "threshold", "rpm", RPM),
 }
 """By the name of the attribute, JSON key or table variable (SI)."""
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
 
 P = ParamSpec("P")
-Result = TypeVar("Result")
+_Result = TypeVar("_Result")
 
 
 @cache
@@ -21,11 +21,11 @@ def _controller() -> ThreadpoolController:
     return ThreadpoolController()
 
 
-def on_one_blas_thread(function: Callable[P, Result]) -> Callable[P, Result]:
+def on_one_blas_thread(function: Callable[P, _Result]) -> Callable[P, _Result]:
     """Run a function with the BLAS held to one thread."""
 
     @wraps(function)
-    def held(*args: P.args, **kwargs: P.kwargs) -> Result:
+    def held(*args: P.args, **kwargs: P.kwargs) -> _Result:
         with _controller().limit(limits=1, user_api="blas"):
             return function(*args, **kwargs)
 

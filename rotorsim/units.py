@@ -20,12 +20,12 @@ from .unit_spellings import as_force, readings
 if TYPE_CHECKING:
     import pint
 
-MAX_TEXT = 100
+_MAX_TEXT = 100
 """Characters in the longest text that is looked at."""
 
 
 @dataclass(frozen=True)
-class Kind:
+class _Kind:
     """A kind of physical quantity.
 
     Parameters
@@ -48,30 +48,30 @@ class Kind:
 
 
 _KINDS = (
-    Kind("length", "m", "100 um", 1e-12, 1e3),
-    Kind("temperature", "K", "40 degC", 1.0, 3e3),
-    Kind("temperature difference", "K", "3 K", 1e-9, 1e3),
-    Kind("angle", "rad", "90 deg", 1e-12, 1e3),
-    Kind("slope", "m/m", "0.1 mm/m", 1e-12, 1.0),
-    Kind("speed", "rad/s", "3000 rpm", 1e-9, 1e6),
-    Kind("velocity", "m/s", "5 mm/s", 1e-15, 1e4),
-    Kind("time", "s", "2 s", 1e-9, 1e6),
-    Kind("mass", "kg", "1200 kg", 1e-9, 1e9),
-    Kind("moment of inertia", "kg*m^2", "0.55 kg*m^2", 1e-12, 1e9),
-    Kind("force", "N", "10 kN", 1e-9, 1e12),
-    Kind("stiffness", "N/m", "10 MN/m", 1e-9, 1e15),
-    Kind("damping", "N*s/m", "200 N*s/m", 1e-9, 1e12),
-    Kind("acceleration", "m/s^2", "10 m/s^2", 1e-9, 1e6),
-    Kind("pressure", "Pa", "70 kPa", 1e-6, 1e11),
-    Kind("modulus", "Pa", "207 GPa", 1e3, 1e13),
-    Kind("unbalance", "kg*m", "500 g*mm", 1e-15, 1e6),
-    Kind("dynamic viscosity", "Pa*s", "0.0277 Pa*s", 1e-8, 1e6),
-    Kind("kinematic viscosity", "m^2/s", "32 cSt", 1e-10, 1e3),
-    Kind("temperature coefficient", "1/K", "0.034 / delta_degC", 1e-9, 1e1),
-    Kind("density", "kg/m^3", "860 kg/m^3", 1e-3, 1e5),
-    Kind("specific heat", "J/(kg*K)", "2000 J/(kg*delta_degC)", 1e-1, 1e6),
-    Kind("thermal conductivity", "W/(m*K)", "0.13 W/(m*delta_degC)", 1e-5, 1e5),
-    Kind("heat transfer coefficient", "W/(m^2*K)", "80 W/(m^2*delta_degC)", 1e-6, 1e8),
+    _Kind("length", "m", "100 um", 1e-12, 1e3),
+    _Kind("temperature", "K", "40 degC", 1.0, 3e3),
+    _Kind("temperature difference", "K", "3 K", 1e-9, 1e3),
+    _Kind("angle", "rad", "90 deg", 1e-12, 1e3),
+    _Kind("slope", "m/m", "0.1 mm/m", 1e-12, 1.0),
+    _Kind("speed", "rad/s", "3000 rpm", 1e-9, 1e6),
+    _Kind("velocity", "m/s", "5 mm/s", 1e-15, 1e4),
+    _Kind("time", "s", "2 s", 1e-9, 1e6),
+    _Kind("mass", "kg", "1200 kg", 1e-9, 1e9),
+    _Kind("moment of inertia", "kg*m^2", "0.55 kg*m^2", 1e-12, 1e9),
+    _Kind("force", "N", "10 kN", 1e-9, 1e12),
+    _Kind("stiffness", "N/m", "10 MN/m", 1e-9, 1e15),
+    _Kind("damping", "N*s/m", "200 N*s/m", 1e-9, 1e12),
+    _Kind("acceleration", "m/s^2", "10 m/s^2", 1e-9, 1e6),
+    _Kind("pressure", "Pa", "70 kPa", 1e-6, 1e11),
+    _Kind("modulus", "Pa", "207 GPa", 1e3, 1e13),
+    _Kind("unbalance", "kg*m", "500 g*mm", 1e-15, 1e6),
+    _Kind("dynamic viscosity", "Pa*s", "0.0277 Pa*s", 1e-8, 1e6),
+    _Kind("kinematic viscosity", "m^2/s", "32 cSt", 1e-10, 1e3),
+    _Kind("temperature coefficient", "1/K", "0.034 / delta_degC", 1e-9, 1e1),
+    _Kind("density", "kg/m^3", "860 kg/m^3", 1e-3, 1e5),
+    _Kind("specific heat", "J/(kg*K)", "2000 J/(kg*delta_degC)", 1e-1, 1e6),
+    _Kind("thermal conductivity", "W/(m*K)", "0.13 W/(m*delta_degC)", 1e-5, 1e5),
+    _Kind("heat transfer coefficient", "W/(m^2*K)", "80 W/(m^2*delta_degC)", 1e-6, 1e8),
 )
 QUANTITIES = {kind.name: kind for kind in _KINDS}
 """Every kind of quantity, by name."""
@@ -184,13 +184,13 @@ def parse_unit(
     """
     wanted = QUANTITIES[kind]
     try:
-        if not text.strip() or len(text) > MAX_TEXT:
+        if not text.strip() or len(text) > _MAX_TEXT:
             raise _Refusal(f"must be a unit of {kind}")
         return _conversion(text.strip(), wanted)
     except _Refusal as refusal:
         raise InputError(
             f'{refusal}; write for example "{example or wanted.unit}"',
-            source=source, key=key, value=text[:MAX_TEXT],
+            source=source, key=key, value=text[:_MAX_TEXT],
         ) from None  # fmt: skip
 
 
@@ -198,17 +198,17 @@ class _Refusal(Exception):
     """Why a text is not the quantity wanted."""
 
 
-def _one(kind: Kind) -> str:
+def _one(kind: _Kind) -> str:
     """Kind with its article: a length, an angle."""
     return f"{'an' if kind.name[0] in 'aeiou' else 'a'} {kind.name}"
 
 
-def _parse(text: object, kind: Kind) -> float:
+def _parse(text: object, kind: _Kind) -> float:
     if isinstance(text, bool) or not isinstance(text, str | int | float):
         raise _Refusal(f"must be one {kind.name} with its unit, in quotes")
     if not isinstance(text, str):
         raise _Refusal(f"is a bare number: {_one(kind)} needs its unit, in quotes")
-    if len(text) > MAX_TEXT:
+    if len(text) > _MAX_TEXT:
         raise _Refusal(f"is too long to be {_one(kind)} ({len(text)} characters)")
     number = _NUMBER.match(text)
     if number is None:
@@ -238,7 +238,7 @@ def _parse(text: object, kind: Kind) -> float:
 
 
 @lru_cache(maxsize=512)
-def _conversion(text: str, kind: Kind) -> tuple[float, float]:
+def _conversion(text: str, kind: _Kind) -> tuple[float, float]:
     """``(offset, factor)``: SI value = offset + factor * number."""
     refusals: list[_Refusal] = []
     found: list[tuple[float, float]] = []
@@ -255,7 +255,7 @@ def _conversion(text: str, kind: Kind) -> tuple[float, float]:
     return offset, factor
 
 
-def _converted(reading: str, text: str, kind: Kind) -> tuple[float, float]:
+def _converted(reading: str, text: str, kind: _Kind) -> tuple[float, float]:
     """Conversion of one `reading` of the unit written as `text`."""
     registry = _registry()
     try:
@@ -282,7 +282,7 @@ def _converted(reading: str, text: str, kind: Kind) -> tuple[float, float]:
         raise _Refusal(_unknown_unit(text, error) + _hint(text, kind)) from None
 
 
-def _to_si(number: float, unit: pint.Unit, kind: Kind) -> float:
+def _to_si(number: float, unit: pint.Unit, kind: _Kind) -> float:
     return float(_registry().Quantity(number, unit).to(kind.unit).magnitude)
 
 
@@ -315,7 +315,7 @@ def _check_name(name: str) -> None:
             raise _Refusal(f'holds no known unit ("{name}")')
 
 
-def _check_meaning(unit: pint.Unit, text: str, kind: Kind) -> None:
+def _check_meaning(unit: pint.Unit, text: str, kind: _Kind) -> None:
     """Refuse what has the right dimension and still another meaning."""
     if kind.name == "temperature" and "delta" in str(unit):
         raise _Refusal(f'"{text}" is a temperature difference, a temperature is needed')
@@ -335,7 +335,7 @@ def _unknown_unit(text: str, error: Exception) -> str:
     return f'holds no known unit ("{name if isinstance(name, str) else text}")'
 
 
-def _hint(text: str, kind: Kind) -> str:
+def _hint(text: str, kind: _Kind) -> str:
     hint = _HINTS.get((text, kind.name))
     force = as_force(text)
     if hint is None and force != text and _is_unit(force, kind):
@@ -348,7 +348,7 @@ def _hint(text: str, kind: Kind) -> str:
     return f" ({hint})" if hint else ""
 
 
-def _is_unit(text: str, kind: Kind) -> bool:
+def _is_unit(text: str, kind: _Kind) -> bool:
     try:
         _conversion(text, kind)
     except _Refusal:
@@ -357,7 +357,7 @@ def _is_unit(text: str, kind: Kind) -> bool:
 
 
 @cache
-def _dimensionality(kind: Kind) -> object:
+def _dimensionality(kind: _Kind) -> object:
     return _registry().Quantity(1.0, kind.unit).dimensionality
 
 

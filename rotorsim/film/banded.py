@@ -33,7 +33,7 @@ class SingularFilmError(ArithmeticError):
 
 
 @dataclass(frozen=True)
-class FilmFactor:
+class _FilmFactor:
     """Cholesky factor of the operator on the active cells; `solve` may be called repeatedly.
 
     Attributes
@@ -63,7 +63,7 @@ class FilmFactor:
         return result.reshape(np.shape(right))
 
 
-def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
+def factor_operator(operator: FilmOperator, active: Flags) -> _FilmFactor:
     """Factor the conductance matrix restricted to the `active` cells."""
     order, folded = column_order(operator.interior, active)
     n, m = active.shape
@@ -80,7 +80,7 @@ def factor_operator(operator: FilmOperator, active: Flags) -> FilmFactor:
         factor, info = _factorise(band.T, lower=1, overwrite_ab=1)
     if info != 0:
         raise SingularFilmError(f"the film's matrix is not positive definite (pivot {info})")
-    return FilmFactor(factor=factor, order=order, active=active)
+    return _FilmFactor(factor=factor, order=order, active=active)
 
 
 @lru_cache(maxsize=1)

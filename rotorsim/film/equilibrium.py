@@ -23,7 +23,7 @@ ECCENTRICITY_LIMITS = (1e-5, 0.9995)
 """Eccentricity ratios between which an equilibrium is sought."""
 CLEARANCE_KEPT = 5e-4
 """Thinnest film, relative to the clearance, to which a step may take a journal."""
-SHORTEST_STEP = 1e-4
+_SHORTEST_STEP = 1e-4
 """Part of a step below which none helps."""
 
 
@@ -125,7 +125,7 @@ class Backtracking:
             self._best, self._start, self._target, self._share = off, old, new, 1.0
             return new
         self._share *= 0.5
-        if self._share < SHORTEST_STEP:
+        if self._share < _SHORTEST_STEP:
             return None
         return self._start + self._share * (self._target - self._start)
 

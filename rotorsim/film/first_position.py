@@ -29,7 +29,7 @@ from .mesh import groove_edges, in_full_groove
 from .problem import film_problem, film_state
 
 Array = NDArray[np.float64]
-Position = tuple[float, float]
+_Position = tuple[float, float]
 
 _COARSE = (72, 12)
 _ANGLES = 24
@@ -89,7 +89,7 @@ class ForceField:
         room = bearing.radial_clearance + bore_offset(bearing, theta) - aside
         return cls(replace(case, film=replace(case.film, mesh=coarse)), speed, normals, room)
 
-    def force(self, position: Position) -> Array | None:
+    def force(self, position: _Position) -> Array | None:
         """Return the force at `position`; None where it cannot be solved for."""
         bearing = self.case.bearing
         frame = math.atan2(position[1], position[0]) if bearing.is_plain else 0.0
@@ -115,13 +115,13 @@ class ForceField:
         return max(float(((self.room[near] - least) / towards[near]).min()), 0.0)
 
 
-def first_positions(field: ForceField) -> list[Position]:
+def first_positions(field: ForceField) -> list[_Position]:
     """Return positions [m] from which a search for the equilibrium may begin, the best one first.
 
     Empty where the film carries nothing at any position of the grid.
     """
     target = field.case.target
-    found: list[tuple[float, float, Position]] = []
+    found: list[tuple[float, float, _Position]] = []
     for position in _places(field):
         force = field.force(position)
         size = 0.0 if force is None else float(np.hypot(*force))
@@ -140,7 +140,7 @@ def first_positions(field: ForceField) -> list[Position]:
     return list(dict.fromkeys(entry[2] for entry in nearest + closest))
 
 
-def _places(field: ForceField) -> Iterator[Position]:
+def _places(field: ForceField) -> Iterator[_Position]:
     target = field.case.target
     for angle in 2.0 * math.pi / _ANGLES * np.arange(_ANGLES):
         x, y = math.cos(angle), math.sin(angle)

@@ -50,7 +50,7 @@ class FlowLaw(Protocol):
         ...
 
 
-class LaminarFlow:
+class _LaminarFlow:
     """Integrals that do not depend on the film thickness."""
 
     name: str = "laminar"
@@ -63,7 +63,7 @@ class LaminarFlow:
         return layers
 
 
-_LAWS: dict[str, FlowLaw] = {law.name: law for law in (LaminarFlow(),)}
+_LAWS: dict[str, FlowLaw] = {law.name: law for law in (_LaminarFlow(),)}
 
 
 def flow_law(name: str) -> FlowLaw:

@@ -148,7 +148,7 @@ def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
         inward = 1e-9 * np.diff(mesh.theta_faces)
         inside = _angles(mesh) + np.stack([np.zeros_like(inward), inward, -inward])
         bore = bearing.radial_clearance + bore_offset(bearing, inside)
-        displacements = translations(bearing, mesh)
+        displacements = _translations(bearing, mesh)
     rest = np.repeat(bore[[0, 1, 2, 0, 0]][:, :, None], mesh.shape[1], axis=2)
     if not bearing.is_symmetric:
         slopes = np.array([-bearing.misalignment[1], bearing.misalignment[0]])
@@ -207,7 +207,7 @@ def _pads_at_rest(bearing: Bearing, mesh: FilmMesh) -> Array:
 def _journal_and_pads(bearing: Bearing, mesh: FilmMesh) -> Displacements:
     """Displacements of the journal, and tilt, pivot displacement and pitch of the pads."""
     names, places = pad_unknowns(bearing)
-    journal = translations(bearing, mesh)
+    journal = _translations(bearing, mesh)
     shapes = np.zeros((len(names), 5, *mesh.shape))
     scales = np.full(len(names), bearing.radial_clearance)
     shapes[:2] = journal.shapes
@@ -228,7 +228,7 @@ def _journal_and_pads(bearing: Bearing, mesh: FilmMesh) -> Displacements:
     return Displacements(names, shapes, scales)
 
 
-def translations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
+def _translations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
     """Displacements of the journal's centre along x and y [m]."""
     theta = _angles(mesh)
     around = np.stack([-np.cos(theta), -np.sin(theta)])[:, [0, 1, 2, 0, 0], :, None]

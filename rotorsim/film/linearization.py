@@ -35,14 +35,14 @@ from .thd import ThermalFilm, solve_thermal_film
 
 Array = NDArray[np.float64]
 
-RELATIVE_STEP = 2e-3
+_RELATIVE_STEP = 2e-3
 """Displacement of `following_stiffness`, relative to the thinnest film."""
-STEP_TOLERANCE = 1e-9
+_STEP_TOLERANCE = 1e-9
 """Change of log viscosity at which a displaced film counts as converged."""
 
 
 @dataclass(frozen=True)
-class Motions:
+class _Motions:
     """Displacements whose motions solve one film matrix.
 
     Attributes
@@ -61,7 +61,7 @@ class Motions:
         """What unit displacements, then unit velocities, add to each cell's continuity."""
         state, shapes = self.state, self.displacements.shapes
         squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
-        right = [displacement_sources(state, shapes), -shapes[:, CENTER] * squeezed]
+        right = [_displacement_sources(state, shapes), -shapes[:, CENTER] * squeezed]
         sources = np.concatenate(right)
         sources[:, state.operator.fixed] = 0.0
         return sources
@@ -75,7 +75,7 @@ class Motions:
         return np.asarray(-multiplicity * shapes @ perturbed.reshape(len(right), -1).T)
 
 
-def film_motions(state: FilmState, *, rotations: bool = False) -> tuple[Motions, ...]:
+def _film_motions(state: FilmState, *, rotations: bool = False) -> tuple[_Motions, ...]:
     """Return the film's own displacements, and the journal's rotations if asked for.
 
     Rotations thin one half of a symmetric film by what they thicken the other: on a half mesh they
@@ -84,14 +84,14 @@ def film_motions(state: FilmState, *, rotations: bool = False) -> tuple[Motions,
     problem, factor = state.problem, state.solution.factor
     own = problem.geometry.displacements
     if not rotations:
-        return (Motions(state, own, factor),)
+        return (_Motions(state, own, factor),)
     turning = problem.geometry.moving(journal_rotations(problem.bearing, problem.mesh))
     if not problem.mesh.half:
-        return (Motions(state, own.joined(turning), factor),)
+        return (_Motions(state, own.joined(turning), factor),)
     topology = problem.topology.antisymmetric()
     operator = film_operator(topology, state.thickness, state.layers, problem.surface_speed)
     antisymmetric = problem.rupture.refactor(operator, state.solution)
-    return Motions(state, own, factor), Motions(state, turning, antisymmetric)
+    return _Motions(state, own, factor), _Motions(state, turning, antisymmetric)
 
 
 def linearize(state: FilmState, *, rotations: bool = False) -> tuple[Array, Array]:
@@ -108,7 +108,7 @@ def linearize(state: FilmState, *, rotations: bool = False) -> tuple[Array, Arra
     """
     blocks = [
         np.split(motions.reaction(motions.sources()), 2, axis=1)
-        for motions in film_motions(state, rotations=rotations)
+        for motions in _film_motions(state, rotations=rotations)
     ]
     stiffness, damping = zip(*blocks, strict=True)
     return np.asarray(block_diag(*stiffness)), np.asarray(block_diag(*damping))
@@ -126,7 +126,7 @@ class DynamicStiffness:
     """
 
     def __init__(self, state: FilmState, *, rotations: bool = False) -> None:
-        self._motions = film_motions(state, rotations=rotations)
+        self._motions = _film_motions(state, rotations=rotations)
         self._sources = [motions.sources() for motions in self._motions]
         self._rupture = state.problem.rupture
         self._volume = state.center_thickness * state.operator.area
@@ -148,11 +148,11 @@ class DynamicStiffness:
 
 def stiffness_matrix(state: FilmState) -> Array:
     """Return K alone [N/m], (q, q): the Jacobian of the forces with its sign turned."""
-    (motions,) = film_motions(state)
-    return motions.reaction(displacement_sources(state, motions.displacements.shapes))
+    (motions,) = _film_motions(state)
+    return motions.reaction(_displacement_sources(state, motions.displacements.shapes))
 
 
-def displacement_sources(state: FilmState, shapes: Array) -> Array:
+def _displacement_sources(state: FilmState, shapes: Array) -> Array:
     """Return what unit displacements add to each cell's continuity [m3/s per m], (q, n, m).
 
     Parameters
@@ -234,7 +234,7 @@ def following_stiffness(film: ThermalFilm) -> tuple[Array, bool]:
     """
     state = film.state
     displacements = state.problem.geometry.displacements
-    relative = RELATIVE_STEP * state.min_thickness / state.problem.bearing.radial_clearance
+    relative = _RELATIVE_STEP * state.min_thickness / state.problem.bearing.radial_clearance
     columns, converged = [], True
     for number, scale in enumerate(displacements.scales):
         step = np.zeros(len(displacements.scales))
@@ -245,7 +245,7 @@ def following_stiffness(film: ThermalFilm) -> tuple[Array, bool]:
                 state.displacement + sign * step,
                 initial=replace(film.heat, temperature=film.heat.temperature.copy()),
                 full=state.solution.full,
-                tolerance=STEP_TOLERANCE,
+                tolerance=_STEP_TOLERANCE,
             )
             for sign in (1.0, -1.0)
         )

@@ -14,7 +14,7 @@ from .problem import FilmState
 
 Array = NDArray[np.float64]
 
-DEFAULT_END_LAND = 0.01
+_DEFAULT_END_LAND = 0.01
 """Over the bearing's length: land at an end of a groove that is not sealed."""
 
 
@@ -62,10 +62,10 @@ def side_flow(state: FilmState) -> float:
     out = np.sum((conductance[NORTH] * pressure * film)[:, -1])
     if not mesh.half:
         out += np.sum((conductance[SOUTH] * pressure * film)[:, 0])
-    return float(mesh.multiplicity * out + end_leakage(state).sum())
+    return float(mesh.multiplicity * out + _end_leakage(state).sum())
 
 
-def end_leakage(state: FilmState) -> Array:
+def _end_leakage(state: FilmState) -> Array:
     """Oil that leaks out of both ends of each groove whose ends are not sealed [m3/s]."""
     problem = state.problem
     bearing, mesh = problem.bearing, problem.mesh
@@ -75,7 +75,7 @@ def end_leakage(state: FilmState) -> Array:
             continue
         temperature = groove.supply_temperature or problem.thermal.supply_temperature
         viscosity = float(problem.lubricant.viscosity(temperature))
-        land = groove.end_land or DEFAULT_END_LAND * bearing.length
+        land = groove.end_land or _DEFAULT_END_LAND * bearing.length
         for column, face in ((0, SOUTH), (-1, NORTH)):
             if column == 0 and mesh.half:
                 continue
@@ -105,7 +105,7 @@ def supply_flow(state: FilmState, flow: FilmFlow) -> Array:
         for number in range(demand.size):
             demand[number] += outward[behind == number].sum()
     np.add.at(demand, _next_groove(supply), _made_oil(state, flow))
-    return mesh.multiplicity * demand + end_leakage(state)
+    return mesh.multiplicity * demand + _end_leakage(state)
 
 
 def _made_oil(state: FilmState, flow: FilmFlow) -> Array:

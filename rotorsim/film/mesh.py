@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 
 # Part of the cells that follows 1/h; the rest is spread evenly. 1/h is the density of Sommerfeld's
 # variable, in which a thin film's pressure is as smooth as a thick one's.
-GRADED_SHARE = 0.5
+_GRADED_SHARE = 0.5
 
 
 @dataclass(frozen=True)
@@ -167,8 +167,8 @@ def _theta_faces(
     # Kept positive, so that the density stays finite.
     h = mid_thickness(bearing, fine, position)
     h = np.maximum(h, 1e-4 * bearing.radial_clearance)
-    density = (1.0 - GRADED_SHARE) / (2.0 * math.pi)
-    density = density + GRADED_SHARE / h / np.trapezoid(1.0 / h, fine)
+    density = (1.0 - _GRADED_SHARE) / (2.0 * math.pi)
+    density = density + _GRADED_SHARE / h / np.trapezoid(1.0 / h, fine)
     steps = 0.5 * (density[1:] + density[:-1]) * np.diff(fine)
     cumulative = np.concatenate([[0.0], np.cumsum(steps)])
     cumulative /= cumulative[-1]

@@ -133,7 +133,7 @@ def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
 
 
 class PadSearch:
-    """Newton's method for journal and pads; a `Move` of `solve_thermal_film`.
+    """Newton's method for journal and pads; see `solve_thermal_film`.
 
     Parameters
     ----------

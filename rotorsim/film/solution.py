@@ -35,17 +35,17 @@ from .thd import (
 )
 
 Array = NDArray[np.float64]
-Position = tuple[float, float]
-Search = PlainSearch | LoadSearch | AttitudeSearch
+_Position = tuple[float, float]
+_Search = PlainSearch | LoadSearch | AttitudeSearch
 
-FORCE_TOLERANCE = 1e-8
+_FORCE_TOLERANCE = 1e-8
 """Relative force residual at which the position counts as found."""
-MAX_POSITION_STEPS = 60
-PATIENCE = 12
+_MAX_POSITION_STEPS = 60
+_PATIENCE = 12
 """Steps after which each must reduce the force residual."""
-FRAME_TOLERANCE = 1e-3
+_FRAME_TOLERANCE = 1e-3
 """Angle [rad] between a misaligned plain film's frame and its line of centres."""
-MAX_MESHES = 8
+_MAX_MESHES = 8
 """Times that the mesh may be graded anew for the position found."""
 
 
@@ -64,7 +64,7 @@ class WarmStart:
         Displacements of tilting pads, after the journal's.
     """
 
-    position: Position
+    position: _Position
     heat: Heat | None
     full: NDArray[np.bool_]
     pads: Array | None = None
@@ -188,7 +188,7 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
     eps = math.hypot(*initial.position) / clearance if initial else 0.5
     warm, search, effort = initial, PlainSearch(target.load, clearance), _Effort()
     while True:
-        level = graded_eccentricity(eps)
+        level = _graded_eccentricity(eps)
         problem = film_problem(case, speed, case.bearing, (level * clearance, 0.0))
         search.unreachable = False
         if problem.is_thermal and warm is None:
@@ -197,7 +197,7 @@ def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSol
             continue
         film = _iterate(
             problem, np.array([eps * clearance, 0.0]), search, warm,
-            lambda q, level=level: effort.proceed(graded_eccentricity(q[0] / clearance) == level),
+            lambda q, level=level: effort.proceed(_graded_eccentricity(q[0] / clearance) == level),
         )  # fmt: skip
         eps = float(film.state.displacement[0]) / clearance
         warm = WarmStart(_pair(film.state.displacement), film.heat, film.state.solution.full)
@@ -217,7 +217,7 @@ class _Effort:
     def proceed(self, settled: bool) -> bool:
         """Return whether to iterate to the end on this mesh; `settled`: it suits the position."""
         self.meshes += 1
-        self.settled = settled or self.meshes >= MAX_MESHES
+        self.settled = settled or self.meshes >= _MAX_MESHES
         return self.settled
 
     def ends(self, film: _Iterate, *, moved: bool = False) -> bool:
@@ -225,18 +225,18 @@ class _Effort:
         self.iterations += film.iterations
         nowhere = self.meshes == self.asked
         self.asked = self.meshes
-        again = moved and self.settled and self.meshes < MAX_MESHES
+        again = moved and self.settled and self.meshes < _MAX_MESHES
         return nowhere or (self.settled and not again)
 
 
-def _cold_start(problem: FilmProblem, displacement: Array, search: Search) -> WarmStart:
+def _cold_start(problem: FilmProblem, displacement: Array, search: _Search) -> WarmStart:
     """Return the isothermal film's position, at which a thermal search begins."""
     cold = _iterate_isothermal(problem, displacement, search, None, lambda _: False)
     displacement = cold.state.displacement if cold.converged else displacement
     return WarmStart(_pair(displacement), None, cold.state.solution.full)
 
 
-def graded_eccentricity(eps: float) -> float:
+def _graded_eccentricity(eps: float) -> float:
     """Round the eccentricity ratio to one of a few for which meshes are graded."""
     step = 0.25
     return 1.0 - math.exp(-step * round(-math.log(1.0 - eps) / step))
@@ -266,21 +266,21 @@ def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmS
             position = _turned(warm.position, frame)
             continue
 
-        def own_mesh(q: Array, bearing: Bearing = bearing, level: Position = level) -> bool:
+        def own_mesh(q: Array, bearing: Bearing = bearing, level: _Position = level) -> bool:
             turn = _frame_angle(case.bearing, _pair(q))
             own = _graded_position(bearing, _pair(q)) == level
-            return effort.proceed(own and abs(turn) < 10.0 * FRAME_TOLERANCE)
+            return effort.proceed(own and abs(turn) < 10.0 * _FRAME_TOLERANCE)
 
         film = _iterate(problem, np.array(local), search, warm, own_mesh)
         local = _pair(film.state.displacement)
         position = _turned(local, frame)
         warm = WarmStart(position, film.heat, film.state.solution.full)
         turn = _frame_angle(case.bearing, local)
-        if effort.ends(film, moved=abs(turn) > FRAME_TOLERANCE) or search.unreachable:
+        if effort.ends(film, moved=abs(turn) > _FRAME_TOLERANCE) or search.unreachable:
             return _conclude(problem, film, frame, search, effort.iterations)
 
 
-def _inside(problem: FilmProblem, search: Search, position: Position) -> Position:
+def _inside(problem: FilmProblem, search: _Search, position: _Position) -> _Position:
     """Return a first position that leaves a film everywhere, nearer to the centre if need be."""
     for share in (1.0, 0.7, 0.4, 0.0):
         nearer = (share * position[0], share * position[1])
@@ -302,7 +302,7 @@ def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | Atti
     return LoadSearch(load, clearance, problem.geometry)
 
 
-def _first_position(case: Case) -> Position:
+def _first_position(case: Case) -> _Position:
     eps = 0.4
     if isinstance(case.target, EccentricityTarget):
         eps = case.target.eccentricity_ratio
@@ -313,12 +313,12 @@ def _first_position(case: Case) -> Position:
     return size * math.cos(0.8), size * math.sin(0.8)
 
 
-def _frame_angle(bearing: Bearing, position: Position) -> float:
+def _frame_angle(bearing: Bearing, position: _Position) -> float:
     """Return the film frame's angle: that of the line of centres for a plain bearing, else 0."""
     return math.atan2(position[1], position[0]) if bearing.is_plain else 0.0
 
 
-def _graded_position(bearing: Bearing, position: Position) -> Position:
+def _graded_position(bearing: Bearing, position: _Position) -> _Position:
     """Round a position to a grid, as fine as the film is thin, for which meshes are graded."""
     thin = float(mid_thickness(bearing, np.linspace(0.0, 2.0 * math.pi, 361), position).min())
     relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
@@ -326,11 +326,11 @@ def _graded_position(bearing: Bearing, position: Position) -> Position:
     return round(position[0] / grid) * grid, round(position[1] / grid) * grid
 
 
-def _pair(displacement: Array) -> Position:
+def _pair(displacement: Array) -> _Position:
     return float(displacement[0]), float(displacement[1])
 
 
-def _turned(position: Position, angle: float) -> Position:
+def _turned(position: _Position, angle: float) -> _Position:
     cos, sin = math.cos(angle), math.sin(angle)
     return position[0] * cos - position[1] * sin, position[0] * sin + position[1] * cos
 
@@ -338,7 +338,7 @@ def _turned(position: Position, angle: float) -> Position:
 def _iterate(
     problem: FilmProblem,
     displacement: Array,
-    search: Search | None,
+    search: _Search | None,
     initial: WarmStart | None,
     proceed: Callable[[Array], bool] | None = None,
 ) -> _Iterate:
@@ -353,7 +353,7 @@ def _iterate(
         displacement,
         initial=heat,
         move=search,
-        force_tolerance=10.0 * FORCE_TOLERANCE,
+        force_tolerance=10.0 * _FORCE_TOLERANCE,
         proceed=proceed,
     )
     return _Iterate(film.state, film, film.converged, film.iterations, film.residual)
@@ -362,7 +362,7 @@ def _iterate(
 def _iterate_isothermal(
     problem: FilmProblem,
     displacement: Array,
-    search: Search | None,
+    search: _Search | None,
     initial: WarmStart | None,
     proceed: Callable[[Array], bool] | None = None,
 ) -> _Iterate:
@@ -383,19 +383,19 @@ def _iterate_isothermal(
             if not proceed(state.displacement):
                 return _Iterate(state, None, state.solution.converged, step, off)
             proceed = None
-        if off < FORCE_TOLERANCE or stuck >= 4 or step == MAX_POSITION_STEPS:
+        if off < _FORCE_TOLERANCE or stuck >= 4 or step == _MAX_POSITION_STEPS:
             break
-        if step >= PATIENCE:
+        if step >= _PATIENCE:
             following = backtracking(displacement, off, following)
         if following is None or np.array_equal(following, displacement):
             break
         displacement = following
-    done = off < FORCE_TOLERANCE and state.solution.converged
+    done = off < _FORCE_TOLERANCE and state.solution.converged
     return _Iterate(state, None, done, step, off)
 
 
 def _conclude(
-    problem: FilmProblem, film: _Iterate, frame: float, search: Search | None, iterations: int
+    problem: FilmProblem, film: _Iterate, frame: float, search: _Search | None, iterations: int
 ) -> FilmSolution:
     """Map the last iterate to a `SolveStatus` with its message."""
     status, message = SolveStatus.CONVERGED, ""

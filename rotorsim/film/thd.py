@@ -8,10 +8,10 @@ A film has converged when all of the following hold.
 
 =============  =====================================================================================
 force          the search's relative residual is below `force_tolerance`
-temperature    in one iteration no log viscosity changes by `TOLERANCE`, no temperature by 1e-4 of
+temperature    in one iteration no log viscosity changes by `_TOLERANCE`, no temperature by 1e-4 of
                the field's spread, and no wall's heat by 1e-3 of the dissipation
 heat balance   it closes within `BALANCE_TOLERANCE` of the dissipation
-rupture        few cells break the rupture condition (`VIOLATIONS_ALLOWED`)
+rupture        few cells break the rupture condition (`_VIOLATIONS_ALLOWED`)
 =============  =====================================================================================
 """
 
@@ -44,38 +44,38 @@ from .walls import FilmContact, Walls, choose_walls
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-TOLERANCE = 1e-5
+_TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
-SPREAD_WEIGHT = 0.1
+_SPREAD_WEIGHT = 0.1
 """How a change of temperature relative to the field's spread counts, as one of log viscosity."""
-SMALLEST_SPREAD = 1e-2
+_SMALLEST_SPREAD = 1e-2
 """[K]; temperatures closer together than this need not be known relative to their spread."""
 BALANCE_TOLERANCE = 1e-3
 """Part of the dissipation that may be unaccounted for in a converged film."""
 BALANCE_ROUNDING = 1e-9
 """Part of all heat that enters the film which is lost in rounding."""
-HEAT_WEIGHT = 0.01
+_HEAT_WEIGHT = 0.01
 """How heat on which film and walls disagree counts, relative to the dissipation."""
-MAX_ITERATIONS = 150
-FAR_RESIDUAL = 0.1
+_MAX_ITERATIONS = 150
+_FAR_RESIDUAL = 0.1
 """Change of log viscosity above which the cells' states are guessed anew."""
 ROUGH_TOLERANCE = 0.02
 """Change of log viscosity and relative force residual at which the solution is known roughly."""
-STAGNATION = 6
+_STAGNATION = 6
 """Iterations over which the residual should at least halve."""
-FREEZE_AFTER = 12
+_FREEZE_AFTER = 12
 """Iterations from which a stagnating film's cells are kept full or ruptured, as they are."""
-VIOLATIONS_ALLOWED = 2e-3
+_VIOLATIONS_ALLOWED = 2e-3
 """Part of the cells that may break the rupture condition at the end because they were kept."""
-UNREACHABLE_STEPS = 8
+_UNREACHABLE_STEPS = 8
 """Iterations that the search may lie at the end of its range before it is given up."""
-BEYOND_LIMITS_STEPS = 25
+_BEYOND_LIMITS_STEPS = 25
 """Iterations in a row that may lead beyond the temperature limits before the film is given up."""
-LOSS_EVERY = 3
+_LOSS_EVERY = 3
 """Iterations from one estimate of the film's loss of heat to the next."""
-POSITION_WEIGHT = 30.0
+_POSITION_WEIGHT = 30.0
 """[K]; a clearance's change of position counts like this change of the whole temperature field."""
-TEMPERATURE_LIMITS = (150.0, 650.0)
+_TEMPERATURE_LIMITS = (150.0, 650.0)
 """[K]; an iterate outside is pulled back, a converged field outside is out of range."""
 
 
@@ -101,7 +101,7 @@ class ThermalFilm:
     cause : str
         What has not converged; empty if `converged`.
     out_of_range : bool
-        Whether the temperatures left `TEMPERATURE_LIMITS`.
+        Whether the temperatures left `_TEMPERATURE_LIMITS`.
     iterations : int
     residual : float
         Last change of log viscosity, or what counts as much (see `_change`).
@@ -122,7 +122,7 @@ class ThermalFilm:
     residual: float
 
 
-class Move(Protocol):
+class _Move(Protocol):
     """Search for the displacements at which the film carries its load."""
 
     unreachable: bool
@@ -149,12 +149,12 @@ def solve_thermal_film(
     displacement: Array,
     *,
     initial: Heat | None = None,
-    move: Move | None = None,
+    move: _Move | None = None,
     full: Flags | None = None,
     proceed: Callable[[Array], bool] | None = None,
     force_tolerance: float = 1e-7,
-    tolerance: float = TOLERANCE,
-    max_iterations: int = MAX_ITERATIONS,
+    tolerance: float = _TOLERANCE,
+    max_iterations: int = _MAX_ITERATIONS,
 ) -> ThermalFilm:
     """Iterate to the fixed point.
 
@@ -249,7 +249,7 @@ class _Progress:
     guess: Flags | None = None
     """First guess of the full cells."""
     history: list[float] = field(default_factory=list)
-    release: int = FREEZE_AFTER
+    release: int = _FREEZE_AFTER
     stuck: int = 0
     beyond: int = 0
     loss: float = math.inf
@@ -260,9 +260,9 @@ class _Progress:
         full = step.state.solution.full
         self.history.append(step.residual)
         # While the heat still moves much, coarser meshes guess the full cells better than the past.
-        self.guess = full if step.residual < FAR_RESIDUAL else None
+        self.guess = full if step.residual < _FAR_RESIDUAL else None
         self.stuck = self.stuck + 1 if unreachable else 0
-        reach = TEMPERATURE_LIMITS[1] - TEMPERATURE_LIMITS[0]
+        reach = _TEMPERATURE_LIMITS[1] - _TEMPERATURE_LIMITS[0]
         trapped = dissipated_power(step.energy) > reach * self.loss
         beyond = trapped or _beyond_limits(step.mapped.temperature)
         self.beyond = self.beyond + 1 if beyond else 0
@@ -277,28 +277,28 @@ class _Progress:
     def broken_rupture(self, step: _Step) -> str:
         """Say how many cells break the rupture condition if too many; their states are released."""
         broken, cells = step.state.solution.violations, step.state.solution.full.size
-        if self.given or broken <= VIOLATIONS_ALLOWED * cells:
+        if self.given or broken <= _VIOLATIONS_ALLOWED * cells:
             return ""
-        self.kept, self.release = None, len(self.history) + FREEZE_AFTER
+        self.kept, self.release = None, len(self.history) + _FREEZE_AFTER
         return f"{broken} of {cells} cells break the rupture condition"
 
     def hopeless(self, max_iterations: int) -> bool:
         """Whether to give up."""
-        lost = self.stuck >= UNREACHABLE_STEPS or self.beyond >= BEYOND_LIMITS_STEPS
+        lost = self.stuck >= _UNREACHABLE_STEPS or self.beyond >= _BEYOND_LIMITS_STEPS
         return lost or not np.isfinite(self.history[-1]) or len(self.history) >= max_iterations
 
     def out_of_range(self, heat: Heat) -> bool:
         """Whether the film left the range of temperatures, for good."""
-        return self.beyond >= BEYOND_LIMITS_STEPS or _beyond_limits(heat.temperature)
+        return self.beyond >= _BEYOND_LIMITS_STEPS or _beyond_limits(heat.temperature)
 
     def _stagnates(self) -> bool:
         """Whether the last iterations brought little against the best before them."""
-        recent = self.history[-STAGNATION:]
-        return min(recent) > 0.5 * min(self.history[:-STAGNATION])
+        recent = self.history[-_STAGNATION:]
+        return min(recent) > 0.5 * min(self.history[:-_STAGNATION])
 
 
 def _beyond_limits(temperature: Array) -> bool:
-    low, high = TEMPERATURE_LIMITS
+    low, high = _TEMPERATURE_LIMITS
     return bool(temperature.min() <= low + 1.0 or temperature.max() >= high - 1.0)
 
 
@@ -325,7 +325,7 @@ def _apply(
     )
     if passes > 1:
         moved = float(np.abs(temperature - heat.temperature).max())
-    if walls.shaft.floats and len(progress.history) % LOSS_EVERY == 0:
+    if walls.shaft.floats and len(progress.history) % _LOSS_EVERY == 0:
         progress.loss = loss_per_degree(problem, energy, walls)
     bush = FilmContact.bush(energy, temperature)
     shaft = FilmContact.shaft(energy, temperature, progress.loss)
@@ -338,7 +338,7 @@ def _apply(
     passed = float(np.sum(walls.bush.exchange(bush) * np.abs(mapped.bush - heat.bush)))
     passed += float(walls.shaft.exchange(shaft) * abs(mapped.shaft - heat.shaft))
     made = dissipated_power(energy)
-    residual = max(change, HEAT_WEIGHT * passed / made if made > 0.0 else 0.0)
+    residual = max(change, _HEAT_WEIGHT * passed / made if made > 0.0 else 0.0)
     return _Step(state, viscosity, energy, inlet, leaving, mapped, residual)
 
 
@@ -356,7 +356,7 @@ def _change(problem: FilmProblem, heat: Heat, mapped: Heat, moved: float) -> flo
     )
     near = problem.lubricant.law.viscosity(np.array([coldest, coldest + 1e-3]))
     thinning = float(np.log(near[0] / near[1])) / 1e-3
-    return change * max(thinning, SPREAD_WEIGHT / max(hottest - coldest, SMALLEST_SPREAD))
+    return change * max(thinning, _SPREAD_WEIGHT / max(hottest - coldest, _SMALLEST_SPREAD))
 
 
 def _balance(problem: FilmProblem, walls: Walls, heat: Heat, step: _Step) -> HeatBalance:
@@ -394,7 +394,7 @@ def _packed(heat: Heat, relative: Array) -> Array:
 def _unpacked(packed: Array, like: Heat, count: int) -> tuple[Heat, Array]:
     """Reverse `_packed` for `count` displacements; temperatures are kept within their limits."""
     films, bore = like.temperature.size, like.bush.size
-    np.clip(packed[:-count], *TEMPERATURE_LIMITS, out=packed[:-count])
+    np.clip(packed[:-count], *_TEMPERATURE_LIMITS, out=packed[:-count])
     heat = Heat(
         temperature=packed[:films].reshape(like.temperature.shape),
         bush=packed[films : films + bore].reshape(like.bush.shape),
@@ -404,4 +404,4 @@ def _unpacked(packed: Array, like: Heat, count: int) -> tuple[Heat, Array]:
 
 
 def _displacement_weight(heat: Heat) -> float:
-    return POSITION_WEIGHT * math.sqrt(heat.temperature.size)
+    return _POSITION_WEIGHT * math.sqrt(heat.temperature.size)

@@ -77,7 +77,7 @@ class FilmContact:
 
 
 @dataclass(frozen=True)
-class Wall(ABC):
+class _Wall(ABC):
     """One wall of the film. The bush's temperature is (n, m), the shaft's a single one.
 
     Attributes
@@ -112,7 +112,7 @@ class Wall(ABC):
 
 
 @dataclass(frozen=True)
-class FixedWall(Wall):
+class _FixedWall(_Wall):
     """A wall at a given temperature, whatever heat it takes."""
 
     def respond(self, temperature: Array, _contact: FilmContact, /) -> Array:
@@ -121,7 +121,7 @@ class FixedWall(Wall):
 
 
 @dataclass(frozen=True)
-class InsulatedWall(Wall):
+class _InsulatedWall(_Wall):
     """A wall that takes no heat anywhere and has the film's temperature."""
 
     insulated = True
@@ -136,7 +136,7 @@ class InsulatedWall(Wall):
 
 
 @dataclass(frozen=True)
-class IsothermalShaft(Wall):
+class _IsothermalShaft(_Wall):
     """A shaft of one temperature that takes no net heat: it turns fast against its inertia."""
 
     floats = True
@@ -161,7 +161,7 @@ class IsothermalShaft(Wall):
 
 
 @dataclass(frozen=True)
-class ConductingBush(Wall):
+class _ConductingBush(_Wall):
     """A bush that conducts the heat from its bore to surroundings at `ambient` [K].
 
     `nusselt` estimates how many times k A/h the film's heat follows the bore; only the convergence
@@ -173,7 +173,7 @@ class ConductingBush(Wall):
     nusselt: float
 
     @classmethod
-    def of(cls, problem: FilmProblem) -> ConductingBush:
+    def of(cls, problem: FilmProblem) -> _ConductingBush:
         """Build the bush of a film problem; the operators of recent meshes are kept.
 
         Raises
@@ -218,7 +218,7 @@ class ConductingBush(Wall):
 
 
 @dataclass(frozen=True)
-class ConductingPads(Wall):
+class _ConductingPads(_Wall):
     """Pads that conduct to surroundings at `ambient` [K] behind, beside and before them.
 
     Attributes
@@ -233,7 +233,7 @@ class ConductingPads(Wall):
     ambient: float
 
     @classmethod
-    def of(cls, problem: FilmProblem) -> ConductingPads:
+    def of(cls, problem: FilmProblem) -> _ConductingPads:
         """Build the pads of a film problem; the operators of recent meshes are kept."""
         mesh, thermal, bearing = problem.mesh, problem.thermal, problem.bearing
         transfer, columns, operators = thermal.bush_heat_transfer, [], []
@@ -288,28 +288,28 @@ def _conducted(
     return ambient + operator.robin_rise(reference, conductance)
 
 
-def _conducting(problem: FilmProblem) -> Wall:
+def _conducting(problem: FilmProblem) -> _Wall:
     pads = problem.bearing.pads
-    return ConductingPads.of(problem) if pads else ConductingBush.of(problem)
+    return _ConductingPads.of(problem) if pads else _ConductingBush.of(problem)
 
 
 @dataclass(frozen=True)
 class Walls:
     """Both walls of a film."""
 
-    bush: Wall
-    shaft: Wall
+    bush: _Wall
+    shaft: _Wall
 
 
-_BUSHES: dict[BushModel, Callable[[FilmProblem], Wall]] = {
-    BushModel.AMBIENT: lambda problem: FixedWall(problem.thermal.ambient_temperature),
-    BushModel.INSULATED: lambda problem: InsulatedWall(problem.thermal.supply_temperature),
+_BUSHES: dict[BushModel, Callable[[FilmProblem], _Wall]] = {
+    BushModel.AMBIENT: lambda problem: _FixedWall(problem.thermal.ambient_temperature),
+    BushModel.INSULATED: lambda problem: _InsulatedWall(problem.thermal.supply_temperature),
     BushModel.CONDUCTION: _conducting,
 }
-_SHAFTS: dict[ShaftModel, Callable[[FilmProblem], Wall]] = {
-    ShaftModel.AMBIENT: lambda problem: FixedWall(problem.thermal.ambient_temperature),
-    ShaftModel.INSULATED: lambda problem: IsothermalShaft(problem.thermal.supply_temperature),
-    ShaftModel.GIVEN: lambda problem: FixedWall(problem.thermal.shaft_temperature or 0.0),
+_SHAFTS: dict[ShaftModel, Callable[[FilmProblem], _Wall]] = {
+    ShaftModel.AMBIENT: lambda problem: _FixedWall(problem.thermal.ambient_temperature),
+    ShaftModel.INSULATED: lambda problem: _IsothermalShaft(problem.thermal.supply_temperature),
+    ShaftModel.GIVEN: lambda problem: _FixedWall(problem.thermal.shaft_temperature or 0.0),
 }
 
 

@@ -21,7 +21,7 @@ from .rotor import Node, Rotor
 
 Array = NDArray[np.float64]
 
-MIN_ELEMENTS = 20
+_MIN_ELEMENTS = 20
 """Of the whole shaft, where the mesh rule decides."""
 _SAME_PLACE = 1e-6
 """Of the shaft's length: places nearer than this share a node."""
@@ -150,7 +150,7 @@ class Beam:
             here = [s for start, stop, s in spans if start <= middle <= stop]
             count = refinement
             if not any(section.elements for section in here):
-                longest = min(*(s.outer_diameter for s in here), self.length / MIN_ELEMENTS)
+                longest = min(*(s.outer_diameter for s in here), self.length / _MIN_ELEMENTS)
                 count *= math.ceil((right - left) / longest * (1.0 - 1e-9))
             nodes += [left + (right - left) * i / count for i in range(1, count + 1)]
         return np.array(nodes)
@@ -230,7 +230,7 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
     mass, stiffness, gyroscopic, geometric = np.zeros((4, size, size))
     for i, (left, right) in enumerate(pairwise(nodes)):
         here = slice(2 * i, 2 * i + 4)
-        translation, rotation, bending, tension = element_matrices(beam, left, right)
+        translation, rotation, bending, tension = _element_matrices(beam, left, right)
         mass[here, here] += translation + rotation
         gyroscopic[here, here] += 2.0 * rotation
         stiffness[here, here] += bending
@@ -266,7 +266,7 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
     )
 
 
-def element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Array, Array, Array]:
+def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Array, Array, Array]:
     """Matrices (4, 4) of the element from `left` to `right` [m], in one plane.
 
     Returns

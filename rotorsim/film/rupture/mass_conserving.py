@@ -25,7 +25,7 @@ from .reynolds import Reynolds
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-MAX_STEPS = 200
+_MAX_STEPS = 200
 
 _BAND_SOLVERS = {
     kind: get_lapack_funcs(("gbtrf", "gbtrs"), dtype=kind) for kind in (float, complex)
@@ -33,7 +33,7 @@ _BAND_SOLVERS = {
 
 
 @dataclass(frozen=True)
-class MixedFactor:
+class _MixedFactor:
     """LU factors of the mixed system; `solve` gives pressures in full cells [Pa].
 
     In ruptured cells the solution is the liquid fraction (or its perturbation).
@@ -71,7 +71,7 @@ class MixedFactor:
     def _solvers(self):
         return _BAND_SOLVERS[complex if np.iscomplexobj(self.matrix) else float]
 
-    def with_stored_oil(self, rate: NDArray[Any]) -> tuple[MixedFactor, NDArray[Any]]:
+    def with_stored_oil(self, rate: NDArray[Any]) -> tuple[_MixedFactor, NDArray[Any]]:
         """Factor the system of a motion exp(s t), in which the ruptured cells store oil.
 
         The liquid fraction crosses a ruptured cell in tau, its volume over the flow through it, so
@@ -145,7 +145,7 @@ class MassConserving:
         self, factor: Factor, rate: NDArray[Any]
     ) -> tuple[Factor, NDArray[Any] | None]:
         """Return the factor with the oil that the ruptured cells store and give back."""
-        assert isinstance(factor, MixedFactor)
+        assert isinstance(factor, _MixedFactor)
         return factor.with_stored_oil(rate)
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
@@ -190,7 +190,7 @@ def _solve(
         if violations == 0 or frozen is not None:
             converged = True
             break
-        if steps >= MAX_STEPS:
+        if steps >= _MAX_STEPS:
             break
         # A set seen before means a cycle: from then on only the worst cells change.
         key = np.packbits(update).tobytes()
@@ -231,7 +231,7 @@ def _worst_changes(full: Flags, update: Flags, unknown: Array) -> Flags:
     return np.where(chosen, update, full)
 
 
-def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[MixedFactor, Array]:
+def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[_MixedFactor, Array]:
     everything = np.ones_like(full)
     order, folded = column_order(operator.interior, everything)
     m = full.shape[1]
@@ -246,7 +246,7 @@ def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[Mix
         operator.conductance, operator.interior, operator.fixed_pressure, operator.couette,
         operator.fixed, full, rate * operator.area, order, position, width, scale, band, right,
     )  # fmt: skip
-    return MixedFactor(band, width, order, scale, full, ~operator.fixed), right
+    return _MixedFactor(band, width, order, scale, full, ~operator.fixed), right
 
 
 @kernel

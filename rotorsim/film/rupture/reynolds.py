@@ -21,8 +21,8 @@ from .base import ConnectedFilm, PressureSolution, source_term, with_fixed
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-MAX_ACTIVE_SET_STEPS = 400
-COARSEST = 16
+_MAX_ACTIVE_SET_STEPS = 400
+_COARSEST = 16
 """Cells around below which no coarser mesh is used for the first guess."""
 
 
@@ -51,7 +51,7 @@ class Reynolds(ConnectedFilm):
         film = ~operator.fixed
         if frozen is not None:
             return operator, _on_frozen_set(operator, source, frozen)
-        guess = coarse_guess(operator, source) if start is None else start
+        guess = _coarse_guess(operator, source) if start is None else start
         solution = _active_set(operator, source, film, guess & film)
         if region is None:
             return operator, solution
@@ -63,19 +63,19 @@ class Reynolds(ConnectedFilm):
         return operator, solution
 
 
-def coarse_guess(operator: FilmOperator, source: Array) -> Flags:
+def _coarse_guess(operator: FilmOperator, source: Array) -> Flags:
     """Full cells of the same film on a mesh twice as coarse, itself begun on a coarser one.
 
     The active set moves by about a cell a step, so that without this the number of steps would grow
     with the mesh.
     """
     n, m = source.shape
-    if n % 2 or m % 2 or n < 2 * COARSEST or m < 4:
+    if n % 2 or m % 2 or n < 2 * _COARSEST or m < 4:
         return ~operator.fixed
     coarse = _coarsened(operator)
     summed = source.reshape(n // 2, 2, m // 2, 2).sum(axis=(1, 3))
     film = ~coarse.fixed
-    solution = _active_set(coarse, summed, film, coarse_guess(coarse, summed) & film)
+    solution = _active_set(coarse, summed, film, _coarse_guess(coarse, summed) & film)
     return np.repeat(np.repeat(solution.full, 2, axis=0), 2, axis=1)
 
 
@@ -133,7 +133,7 @@ def _active_set(
     steps, converged = 0, False
     factor = factor_operator(operator, full) if full.any() else None
     pressure = np.zeros(source.shape)
-    while steps < MAX_ACTIVE_SET_STEPS and factor is not None:
+    while steps < _MAX_ACTIVE_SET_STEPS and factor is not None:
         pressure = factor.solve(source)
         steps += 1
         update = np.empty_like(full)
