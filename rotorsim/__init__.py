@@ -19,16 +19,19 @@ if TYPE_CHECKING:
     from .bearing.solve import solve_case
     from .bearing.table import CoefficientTable
     from .errors import InputError, OutOfRangeError, RotorsimError, ScenarioError, TableError
+    from .files.machine import MachineFile, load_machine
     from .files.scenario import Scenario, load_scenario
     from .film.heat import HeatBalance
     from .machine.map import stability_map
-    from .machine.statespace import state_space
     from .orbit import Orbit
     from .shipped import shipped_scenarios, shipped_tables
     from .show.job import record
     from .show.viewer import open_viewer
     from .status import SolveStatus, Stability
+    from .study.machine import analyse_machine
+    from .study.machines import modes, state_space, unbalance_response
     from .study.orbits import simulate_orbit
+    from .study.points import solve
     from .study.sweep import tabulate
 
 __version__ = "0.1.0"
@@ -38,6 +41,7 @@ __all__ = [
     "FilmFields",
     "HeatBalance",
     "InputError",
+    "MachineFile",
     "OperatingPoint",
     "Orbit",
     "OutOfRangeError",
@@ -48,7 +52,10 @@ __all__ = [
     "Stability",
     "TableError",
     "__version__",
+    "analyse_machine",
+    "load_machine",
     "load_scenario",
+    "modes",
     "open_viewer",
     "record",
     "shipped_scenarios",
@@ -59,6 +66,7 @@ __all__ = [
     "stability_map",
     "state_space",
     "tabulate",
+    "unbalance_response",
 ]
 
 _HOMES = {
@@ -70,12 +78,14 @@ _HOMES = {
     "files.scenario": ("Scenario", "load_scenario"),
     "film.heat": ("HeatBalance",),
     "machine.map": ("stability_map",),
-    "machine.statespace": ("state_space",),
+    "files.machine": ("MachineFile", "load_machine"),
     "orbit": ("Orbit",),
     "shipped": ("shipped_scenarios", "shipped_tables"),
     "show.job": ("record",),
     "show.viewer": ("open_viewer",),
     "status": ("SolveStatus", "Stability"),
+    "study.machine": ("analyse_machine",),
+    "study.machines": ("modes", "state_space", "unbalance_response"),
     "study.orbits": ("simulate_orbit",),
     "study.sweep": ("tabulate",),
 }

@@ -218,3 +218,21 @@ def test_run_tells_supports_response_and_checks(here: CommandLine, tmp_path):
     assert max(probe["amplitude"]) > 0.0
     assert [one["name"] for one in found["supports"]] == ["support 1", "right"]
     assert found["lateral"]["notes"]
+
+
+def test_python_answers_questions_to_a_machine_file(tmp_path):
+    import rotorsim as rs
+
+    path = tmp_path / "rotor.toml"
+    path.write_text(SHAFT + SPRINGS, encoding="utf-8")
+    machine = rs.load_machine(path)
+    speed = 3000.0 * np.pi / 30.0
+    found = rs.modes(machine, speed=speed)
+    lowest = float(found.undamped_frequency[0, 0])
+    system = rs.state_space(machine, speed=speed)
+    assert np.abs(system.poles()).min() == pytest.approx(lowest, rel=1e-6)
+    response = rs.unbalance_response(machine, speed=speed)
+    wheel = response.at("wheel")
+    assert np.abs(wheel).max() > 0.0
+    with pytest.raises(InputError, match="load_machine"):
+        rs.modes("rotor.toml")

@@ -1,0 +1,123 @@
+"""Questions to a machine file, answered directly: modes, unbalance response, state space.
+
+Each takes a `Machine` as well. A machine file's bearings are solved over its speeds when first
+asked, once for each file that was loaded.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
+
+from ..errors import InputError
+from ..files.machine import MachineFile
+from ..machine import modes as of_machine
+from ..machine import response as to_unbalance
+from ..machine import statespace
+from ..machine.branches import Modes
+from ..machine.machine import Machine
+from ..machine.response import UnbalanceResponse
+from .machine import MachineResult, analyse_machine
+
+if TYPE_CHECKING:
+    import control
+
+    from ..bearing.interpolation import Coefficients
+
+
+@lru_cache(maxsize=8)
+def _results(machine: MachineFile) -> dict[str, MachineResult]:
+    return analyse_machine(machine)
+
+
+def assembled(machine: MachineFile | Machine, thermal_model: str | None = None) -> Machine:
+    """Machine with its films solved over the file's speeds.
+
+    Parameters
+    ----------
+    machine : MachineFile or Machine
+        A `Machine` is returned as it is.
+    thermal_model : str, optional
+        ``isothermal`` or ``thd``; by default the last one that the bearings' files name.
+
+    Raises
+    ------
+    InputError
+        No bearing has that thermal model, or `machine` is neither of the two.
+    """
+    if isinstance(machine, Machine):
+        return machine
+    if not isinstance(machine, MachineFile):
+        raise InputError(
+            "must be a machine: rotorsim.load_machine(file) reads one", key="machine",
+            value=machine if isinstance(machine, str) else type(machine).__name__,
+        )  # fmt: skip
+    results = _results(machine)
+    name = next(reversed(results)) if thermal_model is None else thermal_model
+    if name not in results:
+        raise InputError(
+            f"must be one of {', '.join(results)}", key="thermal_model", value=thermal_model
+        )
+    return results[name].machine
+
+
+def modes(
+    machine: MachineFile | Machine,
+    speed: ArrayLike | None = None,
+    *,
+    thermal_model: str | None = None,
+) -> Modes:
+    """Modes of a machine at one speed, or over speed as continuous branches.
+
+    Parameters
+    ----------
+    machine : MachineFile or Machine
+    speed : float or (n,) array, optional
+        Ascending [rad/s], within the file's speeds where it has films or tables; by default all.
+    thermal_model : str, optional
+        See `assembled`.
+    """
+    whole = assembled(machine, thermal_model)
+    if speed is None and isinstance(machine, MachineFile) and not whole.speeds.size:
+        speed = machine.operating.speeds
+    return of_machine.modes(whole, speed)
+
+
+def unbalance_response(
+    machine: MachineFile | Machine,
+    speed: ArrayLike | None = None,
+    *,
+    thermal_model: str | None = None,
+) -> UnbalanceResponse:
+    """Steady response of a machine to its unbalance.
+
+    Parameters are those of `modes`.
+    """
+    whole = assembled(machine, thermal_model)
+    if speed is None and isinstance(machine, MachineFile) and not whole.speeds.size:
+        speed = machine.operating.speeds
+    return to_unbalance.unbalance_response(whole, speed)
+
+
+def state_space(
+    plant: MachineFile | Machine | Coefficients,
+    mass: float | None = None,
+    speed: float | None = None,
+    name: str = "rotor",
+    *,
+    thermal_model: str | None = None,
+) -> control.StateSpace:
+    """State space of a machine at one speed, or of a rigid rotor on one bearing's film.
+
+    Parameters
+    ----------
+    plant : MachineFile, Machine or Coefficients
+    mass, speed, name
+        See `rotorsim.machine.statespace.state_space`.
+    thermal_model : str, optional
+        Of a machine file's bearings; see `assembled`.
+    """
+    whole = assembled(plant, thermal_model) if isinstance(plant, MachineFile) else plant
+    return statespace.state_space(whole, mass, speed, name)
