@@ -52,7 +52,7 @@ def shipped_names(incomplete: str) -> list[str]:
     return [name for name in shipped_scenarios() if name.startswith(incomplete)]
 
 
-def export_formats(text: str) -> list[ExportFormat]:
+def _export_formats(text: str) -> list[ExportFormat]:
     """Formats from words between commas, each once."""
     words = [word.strip().lower() for word in text.split(",")]
     known = ", ".join(ExportFormat)
@@ -214,7 +214,7 @@ def export(
     """
     from ..files.formats import FORMATS, write_table
 
-    kinds = export_formats(to)
+    kinds = _export_formats(to)
     read_at, written_at = load_directions(load_direction, table, kinds)
     loaded = given_table(output, table, bearing, read_at)
     name = table.stem.removesuffix(".ross").removesuffix(".ross2")

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
 
-MANY = 4
+_MANY = 4
 """Points from which on a list is shown instead of each in full."""
 
 
@@ -123,7 +123,7 @@ def solve(
     speeds = wanted_speeds(loaded, speed)
     total = len(cases) * len(speeds)
     check_workers(workers)
-    if workers is None and total < MANY:
+    if workers is None and total < _MANY:
         workers = 1  # starting another process takes longer than the work
     with film_progress(output, total) as progress:
         points = sweep_points(cases, speeds, workers=workers, progress=progress)
@@ -131,7 +131,7 @@ def solve(
     if not (output.json or output.quiet):
         from .tables import point_table, points_tables
 
-        if total < MANY:
+        if total < _MANY:
             output.show(*(point_table(point) for point in points))
         else:
             output.show(loaded.title, *points_tables(points))

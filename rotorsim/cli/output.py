@@ -27,7 +27,7 @@ INCOMPLETE = 1
 """Ran, but something did not converge or left its range; the rest is kept."""
 WRONG_INPUT = 2
 """Nothing was computed: the input must be changed first."""
-INTERRUPTED = 130
+_INTERRUPTED = 130
 """Stopped by the user (the shells' code for it)."""
 
 _TABLE_WIDTH = 100
@@ -134,7 +134,7 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
         except KeyboardInterrupt as stop:
             kept = "; ".join(output.kept) or "nothing was changed"
             output.errors.print(f"interrupted: {kept}")
-            code = getattr(stop, "exit_code", INTERRUPTED)
+            code = getattr(stop, "exit_code", _INTERRUPTED)
         raise typer.Exit(code)
 
     signature = inspect.signature(command, eval_str=True)

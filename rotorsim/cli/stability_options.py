@@ -292,7 +292,7 @@ def wanted_rotor(
             raise InputError(
                 "goes without --mass and --shaft-stiffness", key="--rotor", value=str(file)
             )
-        return load_rotor(file, node_list(nodes), dofs)
+        return load_rotor(file, _node_list(nodes), dofs)
     if nodes is not None or dofs is not None:
         key = "--bearing-nodes" if nodes is not None else "--dofs-per-node"
         raise InputError("goes with --rotor FILE", key=key)
@@ -319,7 +319,7 @@ def _jeffcott(own: Rotor | None, mass: float | None, stiffness: float) -> Rotor:
     return Rotor.jeffcott(**(parts | {"shaft_stiffness": stiffness}))
 
 
-def node_list(text: str | None) -> tuple[int, ...] | None:
+def _node_list(text: str | None) -> tuple[int, ...] | None:
     """Node numbers of ``--bearing-nodes``."""
     if text is None:
         return None

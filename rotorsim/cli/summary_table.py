@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _COLUMNS = ("load", "min_film_thickness", "max_pressure", "power_loss", "side_flow")
 """What isothermal and THD are compared by."""
-LEAST_WALL_SHARE = 0.005
+_LEAST_WALL_SHARE = 0.005
 """Of the heat through the walls, from which on it is said."""
 
 
@@ -43,7 +43,7 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
         lines = "\n".join(late_whirl(said["orbits"], curves))
         if lines:
             yield lines
-    yield files_table(said["files"])
+    yield _files_table(said["files"])
     for path in said["files"].get("recording", []):
         yield f"Play it back: rotorsim view {as_typed(path)}"
 
@@ -82,7 +82,7 @@ def walls_lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     for row in rows:
         for model in _models(row):
             share = row[model]["wall_heat_share"]
-            if share is not None and math.isfinite(share) and abs(share) >= LEAST_WALL_SHARE:
+            if share is not None and math.isfinite(share) and abs(share) >= _LEAST_WALL_SHARE:
                 yield (
                     f"Through bush and shaft go {100.0 * share:.0f} % of the heat ({model}, "
                     f"{QUANTITIES['radial_clearance'].said(row['radial_clearance'])})"
@@ -125,7 +125,7 @@ def threshold_table(curves: Sequence[StabilityCurve]) -> Table:
     return table
 
 
-def files_table(files: Mapping[str, Any]) -> Table:
+def _files_table(files: Mapping[str, Any]) -> Table:
     """Where everything is."""
     table = grid("Files", "what", "where")
     table.columns[1].justify = "left"

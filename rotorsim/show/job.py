@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from .recording import RecordingContents
 
-SURROUNDING_SPEEDS = 12
+_SURROUNDING_SPEEDS = 12
 """Of the table that is computed for an orbit's recording alone."""
 MICRO = 1e6
 
@@ -48,7 +48,7 @@ def write_results(
         return save_figures(figures(results), folder / "figures" / name, ("png",))
 
     def write() -> list[Path]:
-        return [write_recording_of(results, folder / "logs" / f"{name}.rrd")]
+        return [_write_recording_of(results, folder / "logs" / f"{name}.rrd")]
 
     files = {"figures": attempt("figures", draw, []), "recording": attempt("recording", write, [])}
     return files, attempt.problems
@@ -74,7 +74,7 @@ def figures(results: Results) -> Iterator[tuple[str, Figure]]:
     title = results.scenario.title
     yield "coefficients", plots.coefficients_over_speed(results.table, title)
     yield "critical_mass", plots.thresholds_over_speed(results.curves, results.rotor_mass, title)
-    planes = map_planes(results)
+    planes = _map_planes(results)
     for plane in planes:
         clearance = float(plane["radial_clearance"])
         shown = QUANTITIES["radial_clearance"].said(clearance)
@@ -111,7 +111,7 @@ def orbit_figures(
             )
 
 
-def map_planes(results: Results) -> list[xr.Dataset]:
+def _map_planes(results: Results) -> list[xr.Dataset]:
     """Stability maps over speed and mass, one for each clearance; none for a single speed."""
     if results.chart is None:
         return []
@@ -137,14 +137,14 @@ def _marks(results: Results, clearance: float) -> dict[str, tuple[float, float]]
     return marks
 
 
-def write_recording_of(results: Results, path: Path) -> Path:
+def _write_recording_of(results: Results, path: Path) -> Path:
     """Write the whole recording: orbits, film, eigenvalues, map, summary."""
     from .recording import write_recording
 
-    return write_recording(path, recording_contents(results))
+    return write_recording(path, _recording_contents(results))
 
 
-def recording_contents(results: Results) -> RecordingContents:
+def _recording_contents(results: Results) -> RecordingContents:
     """Everything that the recording shows."""
     from .recording import RecordingContents
 
@@ -153,13 +153,13 @@ def recording_contents(results: Results) -> RecordingContents:
     radius = results.scenario.bearing.journal_radius
     return RecordingContents(
         title=results.scenario.title,
-        summary=markdown_summary(results),
+        summary=_markdown_summary(results),
         # Runs at one speed and through the speeds beside each other are the whole job.
         kind=kinds.pop() if len(kinds) == 1 and not both else "",
         orbits=results.orbits,
         films=(*(film_at_rest(point, radius) for point in results.films), *results.film_motion),
         modes=results.modes,
-        maps=tuple(map_planes(results)),
+        maps=tuple(_map_planes(results)),
         rotor_mass=results.rotor_mass,
     )
 
@@ -183,7 +183,7 @@ def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "O
 
     several = (orbits,) if isinstance(orbits, Orbit) else tuple(orbits)
     kind = several[0].kind if several else ""
-    return write_recording(path, RecordingContents(title, orbit_notes(several), kind, several))
+    return write_recording(path, RecordingContents(title, _orbit_notes(several), kind, several))
 
 
 def record_scenario(
@@ -212,15 +212,15 @@ def record_scenario(
     if table is None:
         return record(orbits, path, title=scenario.title), attempt.problems
     results = compute(scenario, (), table, announce, orbits)
-    return write_recording_of(results, path), [*attempt.problems, *results.problems]
+    return _write_recording_of(results, path), [*attempt.problems, *results.problems]
 
 
 def _surrounding_table(scenario: Scenario, workers: int | None = None) -> CoefficientTable:
-    """Table of the orbit's clearance at up to `SURROUNDING_SPEEDS` of the scenario's speeds."""
+    """Table of the orbit's clearance at up to `_SURROUNDING_SPEEDS` of the scenario's speeds."""
     from ..study.sweep import tabulate
 
     speeds, settings = scenario.speeds, orbit_settings(scenario)[0]
-    count = min(speeds.size, SURROUNDING_SPEEDS)
+    count = min(speeds.size, _SURROUNDING_SPEEDS)
     chosen = np.unique(np.linspace(0, speeds.size - 1, count).round().astype(int))
     one = replace(
         scenario,
@@ -233,7 +233,7 @@ def _surrounding_table(scenario: Scenario, workers: int | None = None) -> Coeffi
 _HEATING = ("load", "friction_force", "max_pressure", "max_temperature", "critical_mass")
 
 
-def markdown_summary(results: Results) -> str:
+def _markdown_summary(results: Results) -> str:
     """The summary of the main job as Markdown, for the recording."""
     facts = summary(results, {})
     counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
@@ -253,7 +253,7 @@ def markdown_summary(results: Results) -> str:
                     texts[-1] = one["stability"] or "-"
                 lines.append(f"| {' | '.join((model.value, *texts))} |")
         lines.append("")
-    return "\n".join([*lines, orbit_notes(results.orbits, results.orbit_rows)])
+    return "\n".join([*lines, _orbit_notes(results.orbits, results.orbit_rows)])
 
 
 def conclusion(facts: Mapping[str, Any]) -> list[str]:
@@ -281,7 +281,7 @@ def conclusion(facts: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None = None) -> str:
+def _orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None = None) -> str:
     """What each run shows, how it ended, and what its film force takes for granted, as Markdown.
 
     `rows` are what `describe_orbit` says of the orbits, where that is known already.

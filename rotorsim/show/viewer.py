@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..errors import InputError
 
-ANALYTICS_NOTE = (
+_ANALYTICS_NOTE = (
     "The rerun viewer reports anonymous usage to its makers unless told not to:"
     " `rerun analytics disable` turns that off (it changes your rerun settings)."
 )
@@ -62,7 +62,7 @@ def open_viewer(path: str | Path) -> ViewerLaunch:
     process = subprocess.Popen(
         command, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True
     )
-    return ViewerLaunch(True, f"Opened {recording}. {ANALYTICS_NOTE}", 0, process.pid)
+    return ViewerLaunch(True, f"Opened {recording}. {_ANALYTICS_NOTE}", 0, process.pid)
 
 
 def viewer_program() -> Path | None:

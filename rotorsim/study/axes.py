@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from .sweep import Progress
 
-UNITS = {"applied_load": "N", "supply_temperature": "K"}
+_UNITS = {"applied_load": "N", "supply_temperature": "K"}
 """Dimensions that a table gets beside its own, and their units."""
 
 COARSE = MeshSize(circumferential=48, axial=12, cross_film=8, bush_radial=8)
@@ -36,7 +36,7 @@ COARSE = MeshSize(circumferential=48, axial=12, cross_film=8, bush_radial=8)
 _VISCOSITY_LIMITS = (1e-7, 1e5)
 
 
-def with_load(case: Case, load: float) -> Case:
+def _with_load(case: Case, load: float) -> Case:
     """`case` with the journal held by a load [N]."""
     return dataclasses.replace(case, target=LoadTarget(load))
 
@@ -47,7 +47,7 @@ def with_clearance(case: Case, radial_clearance: float) -> Case:
     return dataclasses.replace(case, bearing=bearing)
 
 
-def with_supply_temperature(case: Case, temperature: float) -> Case:
+def _with_supply_temperature(case: Case, temperature: float) -> Case:
     """`case` with all oil, that of the grooves included, supplied at `temperature` [K]."""
     viscosity = float(case.lubricant.viscosity(temperature))
     low, high = _VISCOSITY_LIMITS
@@ -65,7 +65,7 @@ def with_supply_temperature(case: Case, temperature: float) -> Case:
     return dataclasses.replace(case, bearing=bearing, thermal=thermal)
 
 
-def with_viscosity(case: Case, factor: float) -> Case:
+def _with_viscosity(case: Case, factor: float) -> Case:
     """`case` with an oil that is `factor` as viscous at every temperature."""
     if not (math.isfinite(factor) and factor > 0.0):
         raise InputError("must be above 0", key="viscosity", value=factor)
@@ -88,9 +88,9 @@ def with_mesh(scenario: Scenario, mesh: MeshSize) -> Scenario:
 
 _CHANGES = {
     "radial_clearance": with_clearance,
-    "applied_load": with_load,
-    "supply_temperature": with_supply_temperature,
-    "viscosity": with_viscosity,
+    "applied_load": _with_load,
+    "supply_temperature": _with_supply_temperature,
+    "viscosity": _with_viscosity,
 }
 
 
@@ -156,7 +156,7 @@ def tabulate_over(
     scenario = scenario if mesh is None else with_mesh(scenario, mesh)
     models = list(thermal_models or scenario.thermal_models)
     clearances = axes.get("radial_clearance", scenario.radial_clearances)
-    extra = [name for name in UNITS if name in axes]
+    extra = [name for name in _UNITS if name in axes]
     places = list(itertools.product(*(axes[name] for name in extra)))
     cases = []
     for place in places:
@@ -174,7 +174,10 @@ def tabulate_over(
     for name in reversed(extra):
         tables = {
             place: CoefficientTable.stack(
-                [tables[*place, value] for value in axes[name]], name, list(axes[name]), UNITS[name]
+                [tables[*place, value] for value in axes[name]],
+                name,
+                list(axes[name]),
+                _UNITS[name],
             )
             for place in dict.fromkeys(key[:-1] for key in tables)
         }
@@ -183,7 +186,7 @@ def tabulate_over(
 
 
 def _check_axes(axes: Mapping[str, Sequence[float]]) -> None:
-    allowed: dict[str, Any] = {"radial_clearance": None, **UNITS}
+    allowed: dict[str, Any] = {"radial_clearance": None, **_UNITS}
     for name, values in axes.items():
         if name not in allowed:
             raise InputError(f"must be one of {', '.join(allowed)}", key=name)

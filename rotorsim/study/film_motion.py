@@ -20,12 +20,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-FRAMES_PER_REVOLUTION = 8
+_FRAMES_PER_REVOLUTION = 8
 FIRST_REVOLUTIONS, LAST_REVOLUTIONS = 8, 32
 """At the run's beginning and end, shown in full."""
-BETWEEN = 64
+_BETWEEN = 64
 """Frames of what lies between, each at a whole turn of the shaft."""
-LARGEST_MESH = (156, 48, 24)
+_LARGEST_MESH = (156, 48, 24)
 """Finer films than this are shown on this mesh."""
 
 
@@ -118,7 +118,7 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
     force, mesh = SolvedFilmForce.of(case, solution), solution.problem.mesh
     temperature, hottest = _temperature(solution)
     frames = []
-    for row in shown_samples(orbit):
+    for row in _shown_samples(orbit):
         motion = (orbit.x, orbit.y, orbit.vx, orbit.vy, orbit.speed)
         try:
             state = force.film(*(float(values[row]) for values in motion))
@@ -142,20 +142,20 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
     return frames
 
 
-def shown_samples(orbit: Orbit) -> NDArray[np.intp]:
+def _shown_samples(orbit: Orbit) -> NDArray[np.intp]:
     """Samples at which the film is shown: every move at both ends of the run, few between."""
     turn = orbit.samples_per_revolution
-    step = max(1, turn // FRAMES_PER_REVOLUTION)
+    step = max(1, turn // _FRAMES_PER_REVOLUTION)
     every = np.arange(0, orbit.t.size, step)
     first, last = FIRST_REVOLUTIONS * turn, orbit.t.size - LAST_REVOLUTIONS * turn
     turns = np.arange(first, max(last, first), turn)
-    few = turns[:: max(1, -(-turns.size // BETWEEN))]
+    few = turns[:: max(1, -(-turns.size // _BETWEEN))]
     return np.unique(np.concatenate([every[(every <= first) | (every >= last)], few]))
 
 
 def _shown_case(case: Case) -> Case:
     mesh = case.film.mesh
-    around, along, across = LARGEST_MESH
+    around, along, across = _LARGEST_MESH
     shown = replace(
         mesh,
         circumferential=min(mesh.circumferential, around),

@@ -18,7 +18,7 @@ from ..file_kinds import is_missing, read_bytes
 from ..model import Case
 from ..status import SolveStatus
 
-FORMAT = 2
+_FORMAT = 2
 _MAX_BYTES = 2_000_000_000
 _SUM = "sha256"
 """Key of a line's checksum, over all of its other entries."""
@@ -55,14 +55,14 @@ class Journal:
 
     def find(self, case: Case, speed: float) -> OperatingPoint | None:
         """Return the finished point of `case` at `speed` [rad/s], if there is one."""
-        return self._points.get((case_digest(case), speed))
+        return self._points.get((_case_digest(case), speed))
 
     def append(self, case: Case, points: Sequence[OperatingPoint]) -> None:
         """Add finished `points` of `case`; failed ones are left out, to be tried again."""
         finished = [point for point in points if point.status is not SolveStatus.FAILED]
         if not finished:
             return
-        digest = case_digest(case)
+        digest = _case_digest(case)
         line = {"case": digest, "points": [point_to_dict(point) for point in finished]}
         if self._whole is not None:
             # Cuts off what a kill left half written, or the next line would join it.
@@ -79,7 +79,7 @@ class Journal:
         self.path.unlink(missing_ok=True)
 
     def _read(self) -> dict[tuple[str, float], OperatingPoint]:
-        header = {"rotorsim_journal": FORMAT, "model": model_digest()}
+        header = {"rotorsim_journal": _FORMAT, "model": model_digest()}
         lines = self._lines()
         if lines and not lines[0].startswith('{"rotorsim_journal"'):
             raise InputError(
@@ -125,7 +125,7 @@ def _parse(line: str) -> dict[str, Any]:
     return record if isinstance(record, dict) else {}
 
 
-def case_digest(case: Case) -> str:
+def _case_digest(case: Case) -> str:
     """Fingerprint of everything in `case`: the model objects print all their values in full."""
     return hashlib.sha256(repr(case).encode()).hexdigest()[:24]
 

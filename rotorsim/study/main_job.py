@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 
 Result = TypeVar("Result")
 Announce = Callable[[str], None]
-MAP_CELLS = 241
+_MAP_CELLS = 241
 """Along each axis of the stability map."""
-FILM_FRAMES = 12
+_FILM_FRAMES = 12
 """Speeds at which the film's fields are kept for the recording."""
 
 
@@ -121,15 +121,17 @@ def compute(
     """
     attempt = Attempts(announce)
     curves = attempt("critical mass", lambda: stability_curves(table, scenario.rotor), [])
-    modes = attempt("eigenvalues", lambda: modes_of(scenario, table), [])
+    modes = attempt("eigenvalues", lambda: _modes_of(scenario, table), [])
     chart = attempt("stability map", lambda: map_of(scenario, table), None)
     films: list[OperatingPoint] = []
     motion: list[FilmFrame] = []
     if scenario.orbit is not None:
         settings, _ = orbit_steps.orbit_settings(scenario)
         if orbits is None:
-            orbits = simulated_orbits(scenario, table, attempt)
-        films = attempt("film fields", lambda: film_points(scenario, settings.radial_clearance), [])
+            orbits = _simulated_orbits(scenario, table, attempt)
+        films = attempt(
+            "film fields", lambda: _film_points(scenario, settings.radial_clearance), []
+        )
         if settings.force is OrbitForce.FILM:
             for orbit in orbits:
                 label = f"film along the orbit, {orbit.thermal_model}"
@@ -149,7 +151,9 @@ def compute(
     )
 
 
-def simulated_orbits(scenario: Scenario, table: CoefficientTable, attempt: Attempts) -> list[Orbit]:
+def _simulated_orbits(
+    scenario: Scenario, table: CoefficientTable, attempt: Attempts
+) -> list[Orbit]:
     """The scenario's orbit with each thermal model, and on a linear film its companion."""
     settings, _ = orbit_steps.orbit_settings(scenario)
     ramped = isinstance(settings.speed, SpeedRamp)
@@ -162,7 +166,7 @@ def simulated_orbits(scenario: Scenario, table: CoefficientTable, attempt: Attem
             kind = "changing" if ramped != companion else "constant"
             orbit = attempt(
                 f"orbit at {kind} speed, {model.value}",
-                lambda model=model, companion=companion: one_orbit(
+                lambda model=model, companion=companion: _one_orbit(
                     scenario, table, model.value, companion
                 ),
                 None,
@@ -171,7 +175,7 @@ def simulated_orbits(scenario: Scenario, table: CoefficientTable, attempt: Attem
     return orbits
 
 
-def one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion: bool) -> Orbit:
+def _one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion: bool) -> Orbit:
     """The scenario's orbit with one thermal model, or its companion (see `companion_schedule`)."""
     settings, _ = orbit_steps.orbit_settings(scenario)
     schedule = orbit_steps.companion_schedule(settings, table) if companion else None
@@ -186,11 +190,11 @@ def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
     from ..machine.map import stability_map
 
     settings = scenario.stability
-    speeds = np.linspace(table.speeds[0], table.speeds[-1], MAP_CELLS)
+    speeds = np.linspace(table.speeds[0], table.speeds[-1], _MAP_CELLS)
     speeds = speeds if len(table.speeds) > 1 else table.speeds
     if settings is not None:
         return stability_map(table, np.asarray(settings.masses), speeds)
-    mass = np.linspace(0.05, 3.0, MAP_CELLS) * _usual_mass(scenario, table)
+    mass = np.linspace(0.05, 3.0, _MAP_CELLS) * _usual_mass(scenario, table)
     return stability_map(table, mass, speeds)
 
 
@@ -216,7 +220,7 @@ def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
     return float(np.median(known))
 
 
-def modes_of(scenario: Scenario, table: CoefficientTable) -> list[Campbell]:
+def _modes_of(scenario: Scenario, table: CoefficientTable) -> list[Campbell]:
     """All modes of the scenario's rotor over speed, for each thermal model of the table.
 
     In the orbit's clearance; without an orbit in the first one.
@@ -233,11 +237,11 @@ def modes_of(scenario: Scenario, table: CoefficientTable) -> list[Campbell]:
     return [curve for curve in found if curve.branches.parameter.size > 1]
 
 
-def film_points(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
+def _film_points(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
     """Films over the speeds with their fields, for each thermal model; each starts the next."""
     from ..bearing.solve import solve_case
 
-    count = min(len(scenario.speeds), FILM_FRAMES)
+    count = min(len(scenario.speeds), _FILM_FRAMES)
     chosen = np.unique(np.linspace(0, len(scenario.speeds) - 1, count).round().astype(int))
     found = []
     for model in scenario.thermal_models:

@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from ..orbit import LinearForce, LoadedFilm, Orbit, OrbitProblem, SpeedSchedule
     from ..rotor import Rotor
 
-UNPLACED = (
+_UNPLACED = (
     "the table does not say where the journal stands: the motion is shown about the bearing's "
     "centre, and touch-down is not looked for"
 )
-MAX_SAMPLES = 2_000_000
+_MAX_SAMPLES = 2_000_000
 """Of one orbit that are kept in memory: some 200 MB."""
-RUN_UP_SECONDS = 1.0
+_RUN_UP_SECONDS = 1.0
 """Of the run-up that is added to an orbit at one speed."""
-HOLD_SECONDS = 0.3
+_HOLD_SECONDS = 0.3
 """At its top speed after that, to show what the run-up has led to."""
-RUN_UP_REVOLUTIONS = 60
+_RUN_UP_REVOLUTIONS = 60
 """At the top speed, of the constant-speed orbit that is added to a run-up."""
 
 
@@ -62,7 +62,7 @@ def simulate_orbit(
     Returns
     -------
     Orbit
-        How the run ended is its ``status``. Of a run of more than `MAX_SAMPLES` samples the last
+        How the run ended is its ``status``. Of a run of more than `_MAX_SAMPLES` samples the last
         ones are kept.
 
     Raises
@@ -79,7 +79,7 @@ def simulate_orbit(
 
         table = tabulate(scenario)
     problem = orbit_problem(scenario, table, thermal_model=thermal_model, schedule=schedule)
-    keep = MAX_SAMPLES // problem.samples_per_revolution
+    keep = _MAX_SAMPLES // problem.samples_per_revolution
     orbit = simulate(problem, consume=consume, keep_revolutions=keep)
     if settings.actuator is None or not orbit.t.size:
         return orbit
@@ -124,15 +124,15 @@ def orbit_problem(
             raise InputError(
                 'needs a coefficient table: force is "linear"', source=scenario.source, key="orbit"
             )
-        model = thermal_model or preferred_model(table)
+        model = thermal_model or _preferred_model(table)
         force, bearing = linear_force(scenario, table, model)
         # the coefficients hold about the loaded position, so that the load itself is left out
         load, carried = 0.0, _carried_load(table, model, settings, schedule.speeds[0])
-        placed = has_positions(table)
-        note = "" if placed else UNPLACED
+        placed = _has_positions(table)
+        note = "" if placed else _UNPLACED
     else:
-        model = thermal_model or preferred_scenario_model(scenario)
-        film, placed = nonlinear_film(scenario, model, max(schedule.speeds)), True
+        model = thermal_model or _preferred_scenario_model(scenario)
+        film, placed = _nonlinear_film(scenario, model, max(schedule.speeds)), True
         force, bearing, load, note = film.force, film.bearing, film.load, film.note
         carried = load
     problem = OrbitProblem(
@@ -178,13 +178,13 @@ def linear_force(
     force = LinearForce(
         coefficients=one.interpolator(),
         radial_clearance=clearance,
-        equilibrium=static_position(one, clearance) if has_positions(one) else (0.0, 0.0),
+        equilibrium=static_position(one, clearance) if _has_positions(one) else (0.0, 0.0),
     )
     bearing = replace(scenario.bearing, radial_clearance=clearance)
     return force, bearing.turned(-scenario.load_direction)
 
 
-def nonlinear_film(scenario: Scenario, model: str, speed: float) -> LoadedFilm:
+def _nonlinear_film(scenario: Scenario, model: str, speed: float) -> LoadedFilm:
     """Nonlinear film of the orbit's bearing, its operating point at `speed` [rad/s].
 
     With an eccentricity ratio in place of a load, the load is that which gives it at this speed.
@@ -219,7 +219,7 @@ def scenario_schedule(settings: OrbitSettings) -> SpeedSchedule:
     if isinstance(settings.speed, SpeedRamp):
         ramp = settings.speed
         return SpeedSchedule.ramp(ramp.start, ramp.stop, ramp.duration, ramp.hold)
-    return SpeedSchedule.constant(settings.speed, settings.revolutions or RUN_UP_REVOLUTIONS)
+    return SpeedSchedule.constant(settings.speed, settings.revolutions or _RUN_UP_REVOLUTIONS)
 
 
 def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> SpeedSchedule:
@@ -227,20 +227,20 @@ def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> Spee
     from ..orbit import SpeedSchedule
 
     if isinstance(settings.speed, SpeedRamp):
-        return SpeedSchedule.constant(settings.speed.stop, RUN_UP_REVOLUTIONS)
+        return SpeedSchedule.constant(settings.speed.stop, _RUN_UP_REVOLUTIONS)
     lowest = float(table.speeds[0])
     if settings.speed <= lowest:
         return scenario_schedule(settings)
-    return SpeedSchedule.ramp(lowest, settings.speed, RUN_UP_SECONDS, HOLD_SECONDS)
+    return SpeedSchedule.ramp(lowest, settings.speed, _RUN_UP_SECONDS, _HOLD_SECONDS)
 
 
-def preferred_scenario_model(scenario: Scenario) -> str:
+def _preferred_scenario_model(scenario: Scenario) -> str:
     """``thd`` where the scenario has it, or its first thermal model."""
     models = [model.value for model in scenario.thermal_models]
     return "thd" if "thd" in models else models[0]
 
 
-def preferred_model(table: CoefficientTable) -> str:
+def _preferred_model(table: CoefficientTable) -> str:
     """``thd`` where the table has it, or its first thermal model."""
     models = [str(name) for name in table.dataset["thermal_model"].values]
     return "thd" if "thd" in models else models[0]
@@ -253,7 +253,7 @@ def curve_of(table: CoefficientTable, model: str, clearance: float) -> Coefficie
     return table.select(thermal_model=model, **chosen)
 
 
-def has_positions(table: CoefficientTable) -> bool:
+def _has_positions(table: CoefficientTable) -> bool:
     """Whether the table says where the journal stands; one of another program need not."""
     return {"eccentricity_ratio", "attitude_angle"} <= set(table.dataset)
 

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
+_FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
 """What the film must be solved again for."""
-DIMENSIONS = ("speed", "mass", *FILM_DIMENSIONS)
-CELLS = 101
+DIMENSIONS = ("speed", "mass", *_FILM_DIMENSIONS)
+_CELLS = 101
 _SPEEDS = 12
 
 
@@ -92,7 +92,7 @@ def plane_of_scenario(
     *,
     thermal_models: Sequence[str] | None = None,
     mesh: MeshSize | None = None,
-    cells: int = CELLS,
+    cells: int = _CELLS,
     executor: Executor | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
@@ -127,7 +127,7 @@ def plane_of_scenario(
     given = {**(values or {}), **{name: [value] for name, value in (held or {}).items()}}
     axes = {
         name: _film_values(scenario, name, given.get(name), on_axis=name in (x, y))
-        for name in FILM_DIMENSIONS
+        for name in _FILM_DIMENSIONS
         if name in (x, y) or name in given or name == "radial_clearance"
     }
     speeds = np.asarray(given.get("speed", scenario.speeds if "speed" in (x, y) else []))
@@ -150,7 +150,7 @@ def plane_of_table(
     values: Mapping[str, Sequence[float] | Array | None],
     held: Mapping[str, float] | None = None,
     *,
-    cells: int = CELLS,
+    cells: int = _CELLS,
 ) -> Plane:
     """Map the stability over two inputs that a table holds.
 

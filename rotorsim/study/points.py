@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
     from ..files.scenario import Scenario
 
-Choice = TypeVar("Choice")
+_Choice = TypeVar("_Choice")
 _ALONE = {"orbit": None, "stability": None, "tolerances": None}
 """Tables that say nothing of an operating point, and need not fit the changed entries."""
 
@@ -84,7 +84,7 @@ def solve(
     return solve_case(case, omega, keep_fields=True)[0]
 
 
-def _only(name: str, value: Choice | None, choices: tuple[Choice, ...]) -> Choice:
+def _only(name: str, value: _Choice | None, choices: tuple[_Choice, ...]) -> _Choice:
     if value is not None:
         return value
     if len(choices) != 1:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
 
 
-def rotor_words(rotor: Rotor | None) -> str:
+def _rotor_words(rotor: Rotor | None) -> str:
     """``rotor of 1200 kg per bearing``, ``Jeffcott rotor``; empty without one."""
     if rotor is None:
         return ""
@@ -142,7 +142,7 @@ def _curve(
         critical_mass=found.critical_mass,
         critical_mass_dimensionless=found.critical_mass_dimensionless,
         whirl_frequency_ratio=found.whirl_frequency_ratio,
-        rotor=rotor_words(rotor),
+        rotor=_rotor_words(rotor),
         mass=None if rotor is None else rotor.rigid_mass,
         eigenvalues=eigenvalues,
         undamped=undamped,

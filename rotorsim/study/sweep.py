@@ -52,10 +52,10 @@ def solve_chunk(
     """
     if chunk.model:
         refuse_other_sources(chunk.model)
-    return tuple(along_speed(chunk, solve_case))
+    return tuple(_along_speed(chunk, solve_case))
 
 
-def along_speed(chunk: Chunk, solve_case: Callable[..., Any] | None) -> Iterator[OperatingPoint]:
+def _along_speed(chunk: Chunk, solve_case: Callable[..., Any] | None) -> Iterator[OperatingPoint]:
     """Each speed starts from the last converged one; a failure costs its own point alone."""
     if solve_case is None:
         from ..bearing.solve import solve_case as film_solver
@@ -237,7 +237,7 @@ def _computed(
         yield from _on_executor(chunks, executor, solve_case)
     elif workers == 1:
         for chunk in chunks:
-            for speed, point in zip(chunk.speeds, along_speed(chunk, solve_case), strict=True):
+            for speed, point in zip(chunk.speeds, _along_speed(chunk, solve_case), strict=True):
                 yield Chunk(chunk.number, chunk.case, (speed,)), (point,)
     else:
         from .processes import on_processes

@@ -66,7 +66,8 @@ def test_map_shows_what_heating_decides(open_page, contents):
     assert stable / unstable == pytest.approx(expected, rel=0.15)
     plane = viewer.picture("Eigenvalues")
     assert near(plane, (242, 215, 217), 4).sum() > 500  # where eigenvalues grow
-    assert near(plane, (255, 80, 60), 10).sum() > 20  # the eigenvalue that grows
+    red = near(plane, (240, 75, 56), 25).sum()
+    assert red > 30, red  # the eigenvalue that grows, shaded by the viewer
     assert_healthy(viewer)
 
 

@@ -22,15 +22,15 @@ from ...text import caption
 from .orbits import draw_contact
 from .style import MICRO, SETTINGS, model_style, new_axes
 
-FRAMES_PER_SECOND = 12
-RUN_FRAMES = 50
+_FRAMES_PER_SECOND = 12
+_RUN_FRAMES = 50
 """Of the first act, the whole run."""
 SLOW_FRAMES, SLOW_FRAMES_PER_REVOLUTION = 72, 16
 """Of the second act, the last turns in slow motion."""
 TRAIL_REVOLUTIONS = 3.0
 FORCE_LENGTH = 0.45
 """Arrow of the median film force, in clearances; longer ones stop at twice that."""
-PATH_POINTS = 4000
+_PATH_POINTS = 4000
 
 
 def animate_orbits(
@@ -83,7 +83,7 @@ def can_write_mp4() -> bool:
 
 def _writer(target: Path) -> AbstractMovieWriter:
     if target.suffix == ".gif":
-        return PillowWriter(fps=FRAMES_PER_SECOND)
+        return PillowWriter(fps=_FRAMES_PER_SECOND)
     if target.suffix != ".mp4":
         raise InputError("must end in .gif or .mp4", key="animation", value=str(target))
     if not can_write_mp4():
@@ -92,7 +92,7 @@ def _writer(target: Path) -> AbstractMovieWriter:
             key="animation",
             value=str(target),
         )
-    return FFMpegWriter(fps=FRAMES_PER_SECOND)
+    return FFMpegWriter(fps=_FRAMES_PER_SECOND)
 
 
 class _Scene:
@@ -120,20 +120,20 @@ class _Scene:
         slow = np.clip(np.searchsorted(self.orbit.revolutions, wanted), 0, count - 1)
         if slow_only:
             return slow
-        whole = np.linspace(0, count - 1, RUN_FRAMES).round().astype(np.intp)
+        whole = np.linspace(0, count - 1, _RUN_FRAMES).round().astype(np.intp)
         return np.concatenate([whole, slow])
 
     def show(self, frame: int, slow_only: bool) -> None:
         """Move everything to one frame."""
         frames = self.frames(slow_only)
         at = int(frames[min(frame, frames.size - 1)])
-        act_one = not slow_only and frame < RUN_FRAMES
+        act_one = not slow_only and frame < _RUN_FRAMES
         turns = self.orbit.revolutions
         since = turns[at] - TRAIL_REVOLUTIONS
         if act_one and frame:
             since = min(since, turns[frames[frame - 1]])
         start = int(np.searchsorted(turns, since))
-        before = np.arange(0, start + 1, max(1, start // PATH_POINTS + 1))
+        before = np.arange(0, start + 1, max(1, start // _PATH_POINTS + 1))
         self.past.set_data(self.x[before], self.y[before])
         trail = slice(start, at + 1)
         self.trail.set_data(self.x[trail], self.y[trail])
@@ -143,7 +143,7 @@ class _Scene:
             (self.x[at] + self.arrows[at, 0], self.y[at] + self.arrows[at, 1]),
         )
         self.cursor.set_xdata([turns[at], turns[at]])
-        if frame == (0 if slow_only else RUN_FRAMES):
+        if frame == (0 if slow_only else _RUN_FRAMES):
             self.below.set_xlim(float(turns[frames[-SLOW_FRAMES]]), float(turns[-1]))
         pace = "" if act_one else ", slow motion"
         self.words.set_text(
@@ -176,7 +176,7 @@ class _Scene:
 
     def _below(self, ax: Axes) -> None:
         self.below = ax
-        rows = np.arange(0, self.x.size, max(1, self.x.size // (5 * PATH_POINTS)))
+        rows = np.arange(0, self.x.size, max(1, self.x.size // (5 * _PATH_POINTS)))
         turns = self.orbit.revolutions
         ax.plot(turns[rows], self.x[rows], color=self.colour, linewidth=0.6, label="x")
         ax.plot(turns[rows], self.y[rows], color="0.55", linewidth=0.6, label="y")

@@ -26,8 +26,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
-DPI = 160
-DARK = (25, 25, 30)
+_DPI = 200
+_WIDTH, _LEGEND = 5.4, 6.8
+"""Of the figure [inches], and of its legend's letters [points]."""
+_DARK = (25, 25, 30)
 """Of what moves: the pictures are light."""
 
 
@@ -48,7 +50,12 @@ class Chart:
     figure: Figure
 
     def __post_init__(self) -> None:
-        self.figure.set_dpi(DPI)
+        # Smaller than on paper, so that its letters can be read in a pane of the viewer.
+        width, height = self.figure.get_size_inches()
+        self.figure.set_size_inches(_WIDTH, _WIDTH * height / width)
+        for text in (text for legend in self.figure.legends for text in legend.get_texts()):
+            text.set_fontsize(_LEGEND)
+        self.figure.set_dpi(_DPI)
         self.figure.draw_without_rendering()
 
     @property
@@ -74,7 +81,7 @@ class Chart:
 
     def log(self, stream: rr.RecordingStream) -> None:
         """Write the picture."""
-        png = figure_bytes(self.figure, "png", DPI)
+        png = figure_bytes(self.figure, "png", _DPI)
         picture = rr.EncodedImage(contents=png, media_type="image/png", draw_order=-10.0)
         stream.log(f"{self.entity}/picture", picture, static=True)
 
@@ -141,8 +148,8 @@ def send_operating_point(
     if rotor_mass is None:
         return
     root = f"{chart.entity}/operating_point"
-    dot = rr.Points2D.from_fields(radii=rr.Radius.ui_points(6.0), colors=DARK, draw_order=60.0)
-    words = rr.Points2D.from_fields(radii=0.0, colors=DARK, draw_order=61.0, show_labels=True)
+    dot = rr.Points2D.from_fields(radii=rr.Radius.ui_points(6.0), colors=_DARK, draw_order=60.0)
+    words = rr.Points2D.from_fields(radii=0.0, colors=_DARK, draw_order=61.0, show_labels=True)
     mass = tick_text(float(f"{rotor_mass:.4g}"))
     shown = distinct_speeds(runs)
     places = [(f"{root}/{run.name}", run_index(run, r), run.orbit.speed[r]) for run, r in shown]
@@ -208,6 +215,6 @@ def _send_points(
     shown = chart.inside(values.real, values.imag)
     counts = shown.sum(axis=1)
     flat = values[shown]
-    paint = np.where(flat.real[:, None] > 0.0, [*ALARM, 255], [*DARK, 255]).astype(np.uint8)
+    paint = np.where(flat.real[:, None] > 0.0, [*ALARM, 255], [*_DARK, 255]).astype(np.uint8)
     columns = rr.Points2D.columns(positions=chart.place(flat.real, flat.imag), colors=paint)
     stream.send_columns(entity, index, columns.partition(counts.tolist()))

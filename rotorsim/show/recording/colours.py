@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 # Okabe & Ito: told apart under every common colour blindness.
-MODEL_COLOURS = {
+_MODEL_COLOURS = {
     "isothermal": (86, 180, 233),
     "thd": (230, 159, 0),
 }
@@ -42,7 +42,7 @@ def colours(values: ArrayLike, low: float, high: float, name: str = "viridis") -
 
 def model_colour(name: str) -> tuple[int, int, int]:
     """One colour for all that belongs to one model or run, the same in every view."""
-    for model, colour in MODEL_COLOURS.items():
+    for model, colour in _MODEL_COLOURS.items():
         if name == model or name.startswith(f"{model}_"):
             return colour
     return _OTHER_COLOURS[sum(name.encode()) % len(_OTHER_COLOURS)]

@@ -22,9 +22,9 @@ from .colours import LINE, TEXT, colours
 from .runs import Run, indices_of_frames, pick_run, send_run, speed_index, thin, tick_text
 
 Array = NDArray[np.float64]
-MOVING_SHARE = 0.95
+_MOVING_SHARE = 0.95
 """Of the moments of a run, whose peak pressures the scale holds."""
-JOURNAL_LIMIT = 100_000
+_JOURNAL_LIMIT = 100_000
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ def quantities(films: Sequence[FilmFrame]) -> list[Quantity]:
     resting = [float(film.pressure.max()) for film in films if film.time is None]
     moving = [float(film.pressure.max()) for film in films if film.time is not None]
     # A journal about to touch would leave every other moment colourless.
-    usual = float(np.quantile(moving, MOVING_SHARE)) if moving else 0.0
+    usual = float(np.quantile(moving, _MOVING_SHARE)) if moving else 0.0
     pressure = max([usual, *resting]) / 1e6
     found = [Quantity("pressure", "MPa", 0.0, max(pressure, 1e-9), "viridis")]
     warm = [film.temperature - ZERO_CELSIUS for film in films if film.temperature is not None]
@@ -309,7 +309,7 @@ def _send_motion(stream: rr.RecordingStream, entity: str, run: Run, scale: float
             translation=centre[part].astype(np.float32), quaternion=turn[part].astype(np.float32)
         )
 
-    send_run(stream, entity, run, thin(run.samples, JOURNAL_LIMIT), columns)
+    send_run(stream, entity, run, thin(run.samples, _JOURNAL_LIMIT), columns)
 
 
 def _log_scale(stream: rr.RecordingStream, root: str, quantity: Quantity, film: FilmFrame) -> None:

@@ -25,7 +25,7 @@ from .series_view import (
 )
 
 Part: TypeAlias = rrb.View | rrb.Container
-REVOLUTIONS_PER_SECOND = 3.0
+_REVOLUTIONS_PER_SECOND = 3.0
 """Turns of the shaft in one second of watching."""
 PAGES = ("Overview", "Orbits", "Film", "Stability", "Time series")
 
@@ -41,7 +41,7 @@ class Front:
     frequencies: bool = False
 
 
-WHOLE_JOB = Front((ECCENTRICITY, ACTUATOR_FORCE))
+_WHOLE_JOB = Front((ECCENTRICITY, ACTUATOR_FORCE))
 _PUSHED = Front((LOAD, ACTUATOR_FORCE, DISPLACEMENT, MINIMUM_FILM))
 _PASSING = Front((DISPLACEMENT, SPEED_SERIES, WHIRL), frequencies=True)
 FRONTS = {
@@ -53,7 +53,7 @@ FRONTS = {
     "run_up": _PASSING,
     "coast_down": _PASSING,
 }
-"""By the kind of the scenario's orbit; any other: `WHOLE_JOB`."""
+"""By the kind of the scenario's orbit; any other: `_WHOLE_JOB`."""
 
 
 def layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint:
@@ -97,7 +97,7 @@ def _playback_speed(contents: RecordingContents) -> float | None:
     if not contents.runs:
         return None
     fastest = max(float(np.abs(run.orbit.speed).max()) for run in contents.runs)
-    return float(f"{REVOLUTIONS_PER_SECOND * 2.0 * np.pi / max(fastest, 1e-9):.1g}")
+    return float(f"{_REVOLUTIONS_PER_SECOND * 2.0 * np.pi / max(fastest, 1e-9):.1g}")
 
 
 def _summary_view() -> rrb.View:
@@ -143,7 +143,7 @@ def _frequency_views(contents: RecordingContents) -> list[Part]:
 
 
 def _overview(contents: RecordingContents) -> Part:
-    front = FRONTS.get(contents.kind, WHOLE_JOB)
+    front = FRONTS.get(contents.kind, _WHOLE_JOB)
     frequencies: list[Part] = _frequency_views(contents) if front.frequencies else []
     middle: list[Part] = [_tabs(frequencies)] if frequencies else []
     films = _film_views(contents, flat=False)

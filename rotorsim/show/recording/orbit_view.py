@@ -17,33 +17,33 @@ from .colours import ALARM, FAINT, LINE, TEXT, model_colour
 from .runs import REVOLUTIONS, SAMPLE_LIMIT, TIME, Run, log_labels, send_run, thin
 
 MICRO = 1e6
-PATH_LIMIT = 6_000
-TRAIL_LIMIT = 50_000
+_PATH_LIMIT = 6_000
+_TRAIL_LIMIT = 50_000
 TRAIL_REVOLUTIONS = 3.0
 FORCE_LENGTH = 0.45
 """Arrow of the median force, in clearances; longer ones stop at twice that."""
 
 
-def orbit_entity(name: str) -> str:
+def _orbit_entity(name: str) -> str:
     """Where a run's 2-D picture lives."""
     return f"orbit/{name}"
 
 
-def view_points(x: ArrayLike, y: ArrayLike) -> NDArray[np.float32]:
+def _view_points(x: ArrayLike, y: ArrayLike) -> NDArray[np.float32]:
     """Micrometres in the viewer's axes, (n, 2)."""
     return np.stack([np.asarray(x) * MICRO, -np.asarray(y) * MICRO], axis=-1).astype(np.float32)
 
 
 def log_orbit(stream: rr.RecordingStream, run: Run) -> None:
     """Write one run's orbit picture."""
-    root = orbit_entity(run.name)
+    root = _orbit_entity(run.name)
     log_surroundings(stream, run)
-    points = view_points(run.orbit.x, run.orbit.y)
+    points = _view_points(run.orbit.x, run.orbit.y)
     colour = model_colour(run.name)
     stream.log(
         f"{root}/path_um",
         rr.LineStrips2D(
-            [points[thin(len(points), PATH_LIMIT)]],
+            [points[thin(len(points), _PATH_LIMIT)]],
             radii=rr.Radius.ui_points(0.5),
             colors=tuple(c // 2 for c in colour),
         ),
@@ -54,7 +54,7 @@ def log_orbit(stream: rr.RecordingStream, run: Run) -> None:
 
 def log_orbit_piece(stream: rr.RecordingStream, run: Run) -> None:
     """Write what moves: trail, journal, film force. `run` may be a part of a run."""
-    root, points = orbit_entity(run.name), view_points(run.orbit.x, run.orbit.y)
+    root, points = _orbit_entity(run.name), _view_points(run.orbit.x, run.orbit.y)
     _send_trail(stream, f"{root}/trail_um", run, points)
     _send_journal(stream, f"{root}/journal_um", run, points)
     if np.any(run.force):
@@ -79,10 +79,10 @@ def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
     zoom : float, optional
         Half-width of a close-up about the static position [m]; else the whole clearance circle.
     """
-    root = orbit_entity(run.name)
+    root = _orbit_entity(run.name)
     reach = (1.32 * run.reach if zoom is None else zoom) * MICRO
     x0, y0 = (0.0, 0.0) if zoom is None else run.orbit.equilibrium
-    centre = view_points(x0, y0).astype(float)
+    centre = _view_points(x0, y0).astype(float)
     # The force's scale belongs to the whole circle.
     hidden = [] if zoom is None else [f"- /{root}/film_force_N"]
     title = "Orbit" if zoom is None else f"Close-up, {2.0 * reach:.2g} µm wide"
@@ -113,9 +113,9 @@ def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
 
 def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
     """Write what stands still: contact line, axes, labels, static position, Poincare points."""
-    root = orbit_entity(run.name)
+    root = _orbit_entity(run.name)
     reach = run.reach * MICRO
-    line = view_points(*run.orbit.boundary.T)
+    line = _view_points(*run.orbit.boundary.T)
     arrow = reach * 1.1
     stream.log(
         f"{root}/clearance_um",
@@ -146,7 +146,7 @@ def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
     stream.log(
         f"{root}/equilibrium_um",
         rr.Points2D(
-            [view_points(*run.orbit.equilibrium)],
+            [_view_points(*run.orbit.equilibrium)],
             radii=rr.Radius.ui_points(2.5),
             colors=LINE,
             draw_order=45.0,
@@ -158,7 +158,7 @@ def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
         stream.log(
             f"{root}/once_per_turn_um",
             rr.Points2D(
-                view_points(*points.T),
+                _view_points(*points.T),
                 radii=rr.Radius.ui_points(1.3),
                 colors=ALARM,
                 draw_order=40.0,
@@ -176,7 +176,7 @@ def _send_trail(
     stream: rr.RecordingStream, entity: str, run: Run, points: NDArray[np.float32]
 ) -> None:
     # One short segment per row: the view's time window joins the last turns into the trail.
-    rows = thin(len(points), TRAIL_LIMIT)
+    rows = thin(len(points), _TRAIL_LIMIT)
     stream.log(
         entity,
         rr.LineStrips2D.from_fields(
@@ -221,7 +221,7 @@ def _send_force(
         rr.Arrows2D.from_fields(radii=rr.Radius.ui_points(1.2), colors=(0, 158, 115)),
         static=True,
     )
-    rows = thin(len(points), TRAIL_LIMIT)
+    rows = thin(len(points), _TRAIL_LIMIT)
     shown = force * np.minimum(1.0, 2.0 * middle / np.maximum(magnitude, 1e-12))[:, None]
     arrows = (shown * (scale, -scale)).astype(np.float32)
 

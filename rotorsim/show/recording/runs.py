@@ -22,10 +22,10 @@ REVOLUTIONS = "milli-revolutions"
 SPEED = "speed_rpm"
 """Shaft speed in whole rpm: frames of the film and of the eigenvalues."""
 
-CHUNK_ROWS = 32_768
+_CHUNK_ROWS = 32_768
 SAMPLE_LIMIT = 1_000_000
 """More samples than this of one run are thinned to every second, third, ... one."""
-MOVING_LIMIT = 1_000
+_MOVING_LIMIT = 1_000
 """Positions of a point that follows the speed of a run-up."""
 
 Indices = NDArray[np.intp]
@@ -68,13 +68,13 @@ def runs_of(orbits: Sequence[Orbit]) -> list[Run]:
     return [Run(*pair) for pair in zip(run_names(kept), kept, strict=True)]
 
 
-def time_index(seconds: ArrayLike) -> rr.TimeColumn:
+def _time_index(seconds: ArrayLike) -> rr.TimeColumn:
     """Column of times; rounded, since the library cuts to the nanosecond below."""
     nanoseconds = np.round(np.atleast_1d(np.asarray(seconds, dtype=float)) * 1e9)
     return rr.TimeColumn(TIME, duration=nanoseconds.astype("timedelta64[ns]"))
 
 
-def revolution_index(revolutions: ArrayLike) -> rr.TimeColumn:
+def _revolution_index(revolutions: ArrayLike) -> rr.TimeColumn:
     """Column of thousandths of a turn."""
     thousandths = np.round(np.atleast_1d(np.asarray(revolutions, dtype=float)) * 1000.0)
     return rr.TimeColumn(REVOLUTIONS, sequence=thousandths.astype(np.int64))
@@ -88,7 +88,7 @@ def speed_index(speed: ArrayLike) -> rr.TimeColumn:
 
 def run_index(run: Run, rows: Indices) -> list[rr.TimeColumn]:
     """Both timelines of a run at some of its samples."""
-    return [time_index(run.orbit.t[rows]), revolution_index(run.orbit.revolutions[rows])]
+    return [_time_index(run.orbit.t[rows]), _revolution_index(run.orbit.revolutions[rows])]
 
 
 def thin(count: int, limit: int) -> Indices:
@@ -99,9 +99,9 @@ def thin(count: int, limit: int) -> Indices:
 
 
 def chunks(rows: Indices) -> Iterator[Indices]:
-    """Parts of at most `CHUNK_ROWS`."""
-    for start in range(0, rows.size, CHUNK_ROWS):
-        yield rows[start : start + CHUNK_ROWS]
+    """Parts of at most `_CHUNK_ROWS`."""
+    for start in range(0, rows.size, _CHUNK_ROWS):
+        yield rows[start : start + _CHUNK_ROWS]
 
 
 def send_run(
@@ -161,7 +161,7 @@ def indices_of_frames(
         return places
     if times.size:
         turns = np.interp(times, run.orbit.t, run.orbit.revolutions)
-        index = [time_index(times), revolution_index(turns)]
+        index = [_time_index(times), _revolution_index(turns)]
         return [*places, (index, known.size + np.arange(times.size))]
     rows, numbers = frame_rows(run, known)
     return [*places, (run_index(run, rows), numbers)]
@@ -192,7 +192,7 @@ def distinct_speeds(runs: Sequence[Run]) -> list[tuple[Run, Indices]]:
             found.append(run)
     found.sort(key=lambda run: not run.orbit.constant_speed)
     return [
-        (run, np.array([0]) if run.orbit.constant_speed else thin(run.samples, MOVING_LIMIT))
+        (run, np.array([0]) if run.orbit.constant_speed else thin(run.samples, _MOVING_LIMIT))
         for run in found
     ]
 

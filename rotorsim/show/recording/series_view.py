@@ -18,13 +18,13 @@ from .runs import REVOLUTIONS, SAMPLE_LIMIT, TIME, Run, send_run, thin
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 MICRO = 1e6
-STANDSTILL = 1e-5
+_STANDSTILL = 1e-5
 """Clearances per turn of the shaft below which a journal counts as at rest."""
-ENVELOPE_LIMIT = 40_000
+_ENVELOPE_LIMIT = 40_000
 """Slowly varying series keep the least and the largest sample of each of half as many stretches."""
-WINDOW_LIMIT = 50_000
-"""A plot of more samples shows the last `WINDOW_REVOLUTIONS` only: the viewer would not settle."""
-WINDOW_REVOLUTIONS = 20.0
+_WINDOW_LIMIT = 50_000
+"""A plot of more samples shows the last `_WINDOW_REVOLUTIONS` only: the viewer would not settle."""
+_WINDOW_REVOLUTIONS = 20.0
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ def whirl_ratio(orbit: Orbit, revolutions: float = 4.0) -> Array:
     after = np.clip(turns + 0.5 * revolutions, turns[0], turns[-1])
     swept = np.interp(after, turns, phase) - np.interp(before, turns, phase)
     ratio = swept / (2.0 * np.pi * (after - before))
-    return np.where(np.abs(velocity) > STANDSTILL, ratio, np.nan)
+    return np.where(np.abs(velocity) > _STANDSTILL, ratio, np.nan)
 
 
 def _displacement(orbit: Orbit) -> Array:
@@ -109,12 +109,12 @@ MINIMUM_FILM = Series(
 )
 SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]", lambda orbit: orbit.speed * RPM, 0.0)
 WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", whirl_ratio, 0.0, 1.2)
-ALL_SERIES = (
+_ALL_SERIES = (
     LOAD, ACTUATOR_FORCE, DISPLACEMENT, DISC, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
 )  # fmt: skip
 
 
-def envelope_rows(values: Array, limit: int = ENVELOPE_LIMIT) -> Indices:
+def envelope_rows(values: Array, limit: int = _ENVELOPE_LIMIT) -> Indices:
     """Choose samples that keep every stretch's extremes: about `limit` at most, in order."""
     count = values.size
     if count <= limit:
@@ -136,7 +136,7 @@ def log_series(stream: rr.RecordingStream, run: Run) -> None:
     colour = model_colour(run.name)
     pale = tuple(int(0.5 * c + 110) for c in colour)
     every = thin(run.samples, SAMPLE_LIMIT)
-    for series in ALL_SERIES:
+    for series in _ALL_SERIES:
         values = series.values(run.orbit)
         if values is None:
             continue
@@ -149,7 +149,7 @@ def log_series(stream: rr.RecordingStream, run: Run) -> None:
             _send(stream, series, run, values, every, names, [colour, pale])
 
 
-def series_of(runs: Sequence[Run], wanted: Sequence[Series] = ALL_SERIES) -> list[Series]:
+def series_of(runs: Sequence[Run], wanted: Sequence[Series] = _ALL_SERIES) -> list[Series]:
     """Those of the wanted series that the runs have."""
     return [one for one in wanted if any(one.values(run.orbit) is not None for run in runs)]
 
@@ -204,12 +204,12 @@ def _vertical_range(series: Series, runs: Sequence[Run]) -> tuple[float, float]:
 
 def _window(series: Series, runs: Sequence[Run]) -> rrb.VisibleTimeRanges | None:
     longest = max((run.orbit for run in runs), key=lambda orbit: orbit.t.size)
-    if series is not DISPLACEMENT or longest.t.size <= WINDOW_LIMIT:
+    if series is not DISPLACEMENT or longest.t.size <= _WINDOW_LIMIT:
         return None
     turns = abs(longest.revolutions[-1] - longest.revolutions[0])
-    seconds = float(longest.t[-1] - longest.t[0]) * WINDOW_REVOLUTIONS / max(turns, 1e-9)
+    seconds = float(longest.t[-1] - longest.t[0]) * _WINDOW_REVOLUTIONS / max(turns, 1e-9)
     at = rrb.TimeRangeBoundary.cursor_relative
-    back = -round(1000 * WINDOW_REVOLUTIONS)
+    back = -round(1000 * _WINDOW_REVOLUTIONS)
     return rrb.VisibleTimeRanges(
         [
             rr.VisibleTimeRange(TIME, start=at(seconds=-seconds), end=at()),

@@ -20,7 +20,7 @@ DRAWN_CLEARANCE = 0.22
 """Clearance as drawn, in journal radii."""
 PRESSURE_HEIGHT = 0.55
 """Height of the largest pressure, in journal radii."""
-UNWRAPPED_STRETCH = 1.8
+_UNWRAPPED_STRETCH = 1.8
 """Heights of the rolled-out film are drawn larger by this."""
 
 
@@ -106,7 +106,7 @@ def unwrapped(film: FilmFrame, height: Array) -> Array:
     radius = film.journal_radius * MILLI
     x = np.broadcast_to(angle[:, None] * radius, height.shape)
     z = np.broadcast_to(place, height.shape)
-    return np.stack([x, UNWRAPPED_STRETCH * height * radius, z], axis=-1).reshape(-1, 3)
+    return np.stack([x, _UNWRAPPED_STRETCH * height * radius, z], axis=-1).reshape(-1, 3)
 
 
 def grid_triangles(rows: int = AROUND + 1, columns: int = ALONG + 1) -> NDArray[np.uint32]:
