@@ -21,7 +21,6 @@ from .inputs import (
     wanted_cases,
     wanted_speeds,
 )
-from .machine_commands import check_machine, is_machine
 from .options import (
     ClearanceOption,
     LoadOption,
@@ -50,6 +49,8 @@ def check(output: Output, scenario: ScenarioArgument) -> int:
 
     Example: rotorsim check scenarios/dal.toml
     """
+    from .machine_commands import check_machine, is_machine
+
     if is_machine(scenario):
         return check_machine(output, scenario)
     from ..bearing.checks import derived_numbers, regime_warnings

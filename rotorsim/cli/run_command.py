@@ -6,7 +6,6 @@ from pathlib import Path
 
 from .film_commands import computed_table, report_points
 from .inputs import table_path
-from .machine_commands import is_machine, run_machine
 from .options import OutputFolder, ScenarioArgument, SchedulerOption, WorkersOption
 from .output import INCOMPLETE, Output
 
@@ -22,6 +21,8 @@ def run(
 
     Example: rotorsim run scenarios/dal.toml
     """
+    from .machine_commands import is_machine, run_machine
+
     if is_machine(scenario):
         return run_machine(output, scenario, workers)
     from ..files.scenario import load_scenario

@@ -11,7 +11,6 @@ from ..errors import InputError
 from ..file_kinds import FileKind, kind_of, sentence
 from .film_commands import computed_table
 from .inputs import cluster, given_table, table_path, wanted_mass
-from .machine_commands import is_machine, machine_stability
 from .options import BearingOption, ModelOption, SchedulerOption, WorkersOption
 from .output import DONE, INCOMPLETE, Output
 from .stability_options import (
@@ -95,6 +94,8 @@ def stability(
     With --tolerances or --tolerance: what tolerances do to the threshold.
     rotorsim stability scenarios/elliptical.toml --tolerance "radial_clearance=5 um"
     """
+    from .machine_commands import is_machine, machine_stability
+
     if is_machine(source):
         own = {"--mass": mass, "--rotor": rotor, "--shaft-stiffness": shaft_stiffness}
         return machine_stability(output, source, own, workers)
