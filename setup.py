@@ -6,7 +6,12 @@ from pathlib import Path
 from setuptools import setup
 from setuptools.command.build_py import build_py
 
-SHIPPED = ("scenarios/*.toml", "coefficients/dal.nc")
+SHIPPED = (
+    "scenarios/*.toml",
+    "scenarios/machines/*.toml",
+    "scenarios/machines/bearings/*.toml",
+    "coefficients/dal.nc",
+)
 
 
 class BuildWithShippedFiles(build_py):

@@ -20,6 +20,18 @@ def shipped_scenarios() -> dict[str, Path]:
     return {path.stem: path for path in sorted(_folder("scenarios").glob("*.toml"))}
 
 
+def shipped_machines() -> dict[str, Path]:
+    """Files of the shipped machines by name; those of their bearings lie in a folder beside them.
+
+    Examples
+    --------
+    >>> shipped_machines()["machines/friswell"].name
+    'friswell.toml'
+    """
+    folder = _folder("scenarios") / "machines"
+    return {f"machines/{path.stem}": path for path in sorted(folder.glob("*.toml"))}
+
+
 def shipped_tables() -> dict[str, Path]:
     """Files of the shipped coefficient tables by name.
 
@@ -33,10 +45,13 @@ def shipped_tables() -> dict[str, Path]:
 
 
 def shipped_file(name: str) -> Path | None:
-    """File behind a name as it is typed: ``dal`` is a scenario, ``dal.nc`` a table."""
+    """File behind a name as it is typed.
+
+    ``dal`` is a scenario, ``dal.nc`` a table, ``machines/compressor`` a machine.
+    """
     if name.endswith(".nc"):
         return shipped_tables().get(name.removesuffix(".nc"))
-    return shipped_scenarios().get(name)
+    return shipped_scenarios().get(name) or shipped_machines().get(name)
 
 
 def _folder(name: str) -> Path:

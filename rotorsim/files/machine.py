@@ -6,6 +6,7 @@ from the machine.
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -41,6 +42,7 @@ from ..model.shaft import (
     Section,
 )
 from ..rotor import Beam, Rotor, beam_rotor, with_unbalance
+from ..shipped import shipped_machines
 from ..text import printable
 from .formats import is_table, read_table
 from .scenario import Scenario, load_scenario
@@ -307,6 +309,8 @@ def load_machine(path: str | Path) -> MachineFile:
     Parameters
     ----------
     path : str or Path
+        A file, or the name of a shipped machine, ``machines/compressor`` (see
+        `rotorsim.shipped`).
 
     Raises
     ------
@@ -314,7 +318,8 @@ def load_machine(path: str | Path) -> MachineFile:
         The file, or one that it names, cannot be read, or an entry is wrong: file, key, value and
         what is allowed.
     """
-    return MachineFile.from_text(read_text(path), source=path)
+    found = path if os.path.lexists(path) else shipped_machines().get(str(path), path)
+    return MachineFile.from_text(read_text(found), source=found)
 
 
 def is_machine(path: str | Path) -> bool:

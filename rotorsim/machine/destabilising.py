@@ -40,7 +40,8 @@ class DecrementCurve:
     stiffness : (n,) array
         Q, shared by the places as the anticipated ones are [N/m].
     decrement, frequency : (n,) arrays
-        Of the forward mode whose decrement is least at Q_A; damped frequency [rad/s].
+        Of the forward mode that becomes unstable first, or without any Q0 in reach of the one whose
+        growth rate rises most; damped frequency [rad/s].
     threshold : float or None
         Q0, where the machine becomes unstable [N/m]; 0: it is without any; None: not up to 10 000
         times the anticipated one.
@@ -110,23 +111,27 @@ def decrement_curve(
     reach = _REACH * total
     if threshold is not None:
         reach = max(min(reach, 1.2 * threshold), 1.2 * total)
-    values = np.union1d(np.linspace(0.0, reach, points), [total])
+    values = np.union1d(np.linspace(0.0, reach, points), [total, min(threshold or 0.0, reach)])
     branches = replace(track_modes(spectrum, values), planes=machine.rotor.planes).oscillating()
-    branch = _critical_branch(branches, int(np.searchsorted(values, total)))
+    branch = _critical_branch(branches, threshold)
     return DecrementCurve(
         speed, total, values, branches.logarithmic_decrement[:, branch],
         branches.damped_frequency[:, branch], threshold,
     )  # fmt: skip
 
 
-def _critical_branch(branches: Modes, at: int) -> int:
-    """Branch of least decrement among those that whirl forward at one of the values."""
-    decrement = np.where(
-        branches.whirl[at] == "forward", branches.logarithmic_decrement[at], np.inf
-    )
-    if not np.isfinite(decrement).any():
+def _critical_branch(branches: Modes, threshold: float | None) -> int:
+    """Forward branch that is least stable at the threshold, else the one that is driven most."""
+    growth, values = branches.growth_rate, branches.parameter
+    if threshold is not None and threshold <= values[-1]:
+        at = int(np.abs(values - threshold).argmin())
+        rank = growth[at]
+    else:
+        at, rank = -1, growth[-1] - growth[0]
+    rank = np.where(branches.whirl[at] == "forward", rank, -np.inf)
+    if not np.isfinite(rank).any():
         raise InputError("the machine has no forward mode that oscillates", key="speed")
-    return int(np.nanargmin(decrement))
+    return int(rank.argmax())
 
 
 def _threshold(spectrum: _OverStiffness, first: float) -> float | None:

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.machine import Clearance
+from ..rows import RPM
 from .destabilising import DecrementCurve
 from .peaks import Peak, ProbeResponse, node_at
-from .residual import RPM
 from .response import UnbalanceResponse
 
 Array = NDArray[np.float64]

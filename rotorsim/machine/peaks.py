@@ -26,7 +26,8 @@ _POINTS = 400
 """Speeds of a response over its whole range, at least."""
 _ABOUT_PEAK = np.concatenate([-np.geomspace(8.0, 0.125, 13), [0.0], np.geomspace(0.125, 8.0, 13)])
 """Further speeds near a critical speed, in units of its damping ratio times the speed."""
-_LEAST_DAMPING = 1e-5
+_LEAST_DAMPING = 1e-8
+"""Damping ratio below which a critical speed is undamped: there the response is only rounding."""
 _SAME_PLACE = 1e-6
 """Of the shaft's length."""
 
@@ -123,8 +124,9 @@ def response_speeds(machine: Machine, low: float, high: float, found: Modes | No
     """
     speeds = [np.linspace(low, high, _POINTS)]
     for one in [] if found is None else critical_speeds(machine, found):
-        ratio = max(abs(one.damping_ratio), _LEAST_DAMPING)
-        speeds.append(one.speed * (1.0 + ratio * _ABOUT_PEAK))
+        ratio = abs(one.damping_ratio)
+        if ratio > _LEAST_DAMPING:
+            speeds.append(one.speed * (1.0 + ratio * _ABOUT_PEAK))
     every = np.unique(np.concatenate(speeds))
     return every[(every >= low) & (every <= high)]
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..rotor import Rotor, with_unbalance
+from ..rows import RPM
 from .branches import Modes
 from .machine import Machine
 from .statics import GRAVITY
@@ -17,7 +18,6 @@ from .thresholds import critical_speeds
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-RPM = 30.0 / np.pi
 _ANTINODE = 0.3
 """Of the largest deflection, from which a local maximum is excited."""
 _OVERHUNG = 0.1

@@ -81,7 +81,7 @@ class Beam:
     def _check_layers(self) -> None:
         slack = _SAME_PLACE * self.length
         for layer in {section.layer for section in self.sections}:
-            spans = sorted(self._span(s) for s in self.sections if s.layer == layer)
+            spans = sorted(self.span(s) for s in self.sections if s.layer == layer)
             for (_, end), (start, _) in pairwise(spans):
                 if start < end - slack or (layer == 1 and start > end + slack):
                     word = "overlaps" if start < end else "leaves a gap to"
@@ -108,8 +108,8 @@ class Beam:
                 f"must lie on the shaft, from 0 to {self.length:g} m", key=key, value=at
             )
 
-    def _span(self, section: Section) -> tuple[float, float]:
-        """Left and right end of a section [m]."""
+    def span(self, section: Section) -> tuple[float, float]:
+        """Return the left and right end of a section [m]."""
         start = section.at
         if start is None:
             start = 0.0
@@ -135,7 +135,7 @@ class Beam:
         Elements are shorter than the outer diameter of the section, and the shaft has 20 or more,
         unless a section says how many it has.
         """
-        spans = [(*self._span(section), section) for section in self.sections]
+        spans = [(*self.span(section), section) for section in self.sections]
         ends = [end for start, stop, _ in spans for end in (start, stop)]
         inner = [
             start + (stop - start) * i / section.elements
@@ -157,7 +157,7 @@ class Beam:
 
     def at(self, z: Array, layer_section: Section) -> tuple[Array, Array]:
         """Inner and outer radius (n,) [m] of a section at places z (n,) [m]."""
-        start, stop = self._span(layer_section)
+        start, stop = self.span(layer_section)
         t = (z - start) / (stop - start)
         inner = layer_section.inner_diameter
         outer = layer_section.outer_diameter
@@ -176,7 +176,7 @@ class Beam:
         total = np.zeros((4, z.size))
         middle = float(np.mean(z))
         for section in self.sections:
-            start, stop = self._span(section)
+            start, stop = self.span(section)
             if not start <= middle <= stop:
                 continue
             inner, outer = self.at(z, section)

@@ -21,13 +21,14 @@ from rotorsim.machine.lateral import (
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import modes
 from rotorsim.machine.peaks import Peak, find_peaks, node_at, probe_responses, response_speeds
-from rotorsim.machine.residual import RPM, residual_unbalance, unbalance_cases
+from rotorsim.machine.residual import residual_unbalance, unbalance_cases
 from rotorsim.machine.response import unbalance_response
 from rotorsim.machine.statics import GRAVITY, reactions_by_statics, weight
 from rotorsim.machine.support import ConstantSupport, Pedestal
 from rotorsim.model.machine import Clearance, Probe
 from rotorsim.model.shaft import Disc, Section
 from rotorsim.rotor import Beam, Rotor, beam_rotor, with_unbalance
+from rotorsim.rows import RPM
 
 M, K, EDITION = 50.0, 4e6, "an edition"
 NATURAL = math.sqrt(K / M)
@@ -198,6 +199,19 @@ def test_a_machine_unstable_by_itself_has_no_stiffness_left():
     curve = decrement_curve(Machine(Rotor.rigid(M), [(0, support)]), 500.0, {0: 1e5})
     assert curve.threshold == 0.0
     assert [check.passed for check in stability_checks(curve, EDITION)] == [False, False]
+
+
+def test_the_curve_is_that_of_the_mode_that_is_driven():
+    # The second mode of the shaft is damped less than the first and hardly driven by Q at the disc.
+    machine = beam_machine()
+    node = node_at(machine.rotor, 0.6)
+    curve = decrement_curve(machine, 400.0, {node: 1e4})
+    assert np.all(np.diff(curve.decrement) < 0.0)
+    assert curve.decrement[-1] < 0.0 or curve.threshold > curve.stiffness[-1]
+    first = modes(machine, 400.0).oscillating()
+    forward = (first.whirl[0] == "forward") & (first.damping_ratio[0] < 0.7)
+    lowest = first.damped_frequency[0][forward].min()
+    assert curve.frequency[0] == pytest.approx(lowest, rel=1e-9)
 
 
 def test_shares_of_several_places_are_kept():

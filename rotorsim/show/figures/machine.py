@@ -1,0 +1,435 @@
+"""Figures of a machine: its drawing, modes over speed, mode shapes, response, critical speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+from numpy.typing import NDArray
+
+from ...files.machine import MachineFile
+from ...machine.branches import Modes
+from ...machine.critical_map import CriticalSpeedMap
+from ...machine.peaks import ProbeResponse
+from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpeed
+from ...model.shaft import Disc, Section
+from ...rotor import Beam, Rotor
+from ...rows import RPM
+from ...text import caption
+from .style import (
+    MICRO,
+    SETTINGS,
+    axes_or_new,
+    figure_of,
+    model_label,
+    model_style,
+    new_axes,
+    new_figure,
+    series_style,
+)
+
+Array = NDArray[np.float64]
+
+_WHIRLS = {
+    "forward": {"color": "#0072B2", "linestyle": "-"},
+    "backward": {"color": "#D55E00", "linestyle": (0, (5, 2))},
+    "mixed": {"color": "#009E73", "linestyle": "-."},
+}
+_SHOWN = 2.0
+"""Frequencies up to this multiple of the highest speed are drawn."""
+_MILLI = 1e3
+_SHAFT, _SLEEVE, _DISC, _SUPPORT, _SEAL = "#d9dde2", "#eef0f2", "#8fa3b5", "#D55E00", "#009E73"
+
+
+def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None) -> Figure:
+    """Rotor to scale: sections, discs, added masses, bearings, seals, probes, clearances."""
+    beam = machine.rotor.beam
+    ax = axes_or_new(ax, (8.2, 3.6))
+    top = max(s.outer_diameter for s in beam.sections) / 2.0
+    top = max([top, *(_disc_size(disc, beam)[0] for disc in beam.discs if disc.polar_inertia)])
+    for disc in beam.discs:
+        _draw_disc(ax, disc, beam, top)
+    for section in sorted(beam.sections, key=lambda one: one.layer):
+        _draw_section(ax, beam, section)
+    ax.plot(
+        [-0.03 * beam.length * _MILLI, 1.03 * beam.length * _MILLI], [0, 0], color="0.3",
+        linewidth=0.7, linestyle=(0, (12, 3, 2, 3)),
+    )  # fmt: skip
+    size = 0.16 * top * _MILLI
+    for name, entry in zip(machine.support_names, machine.support, strict=True):
+        radius = _radius(beam, entry.at) * _MILLI
+        x = entry.at * _MILLI
+        for side in (-1.0, 1.0):
+            tip = side * radius
+            corners = [
+                (x, tip),
+                (x - size, tip + side * 2 * size),
+                (x + size, tip + side * 2 * size),
+            ]
+            ax.add_patch(Polygon(corners, closed=True, fc="w", ec=_SUPPORT, lw=1.4, zorder=4))
+        _label(ax, x, -radius - 2.2 * size, name, _SUPPORT, "top")
+    for entry in machine.seal:
+        radius, x = _radius(beam, entry.at) * _MILLI, entry.at * _MILLI
+        ax.plot([x, x], [radius, radius + 2 * size], color=_SEAL, lw=3.0, zorder=4)
+        ax.plot([x, x], [-radius, -radius - 2 * size], color=_SEAL, lw=3.0, zorder=4)
+    for at in dict.fromkeys(entry.at for entry in machine.probe):
+        x, radius = at * _MILLI, _outermost(beam, at) * _MILLI
+        ax.annotate(
+            "", (x, radius), (x, radius + 3.5 * size), zorder=5, annotation_clip=False,
+            arrowprops={"arrowstyle": "-|>", "color": "#0072B2", "lw": 1.2},
+        )  # fmt: skip
+        named = [one.name for one in machine.probe if one.at == at and one.name]
+        _label(ax, x, radius + 3.7 * size, "\n".join(named), "#0072B2", "bottom")
+    for entry in machine.rotor.unbalance:
+        ax.plot(entry.at * _MILLI, 0.0, "o", color="k", ms=4.5, zorder=6)
+    _key(ax, machine)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.grid(visible=False)
+    ax.set(xlabel="from the left end [mm]", ylabel="radius [mm]", title=caption(title))
+    ax.margins(0.04, 0.22)
+    return figure_of(ax)
+
+
+def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
+    left, right = beam.span(section)
+    ends = np.array([left, right])
+    inner, outer = (part * _MILLI for part in beam.at(ends, section))
+    z = ends * _MILLI
+    face = _SLEEVE if section.layer > 1 else _SHAFT
+    hatch = "////" if not section.stiffness else None
+    halves = (-1.0, 1.0) if inner.any() else (0.0,)
+    for side in halves:
+        low, high = (side * inner, side * outer) if side else (-outer, outer)
+        corners = [(z[0], low[0]), (z[0], high[0]), (z[1], high[1]), (z[1], low[1])]
+        ax.add_patch(
+            Polygon(corners, closed=True, fc=face, ec="0.25", lw=0.8, hatch=hatch, zorder=3)
+        )
+    ax.update_datalim([(z[0], -outer.max()), (z[1], outer.max())])
+
+
+def _disc_size(disc: Disc, beam: Beam) -> tuple[float, float]:
+    """Radius and width [m] of a steel disc with the same mass and polar inertia on the shaft."""
+    shaft = _radius(beam, disc.at)
+    outer = np.sqrt(max(2.0 * disc.polar_inertia / disc.mass - shaft**2, 1.2 * shaft**2))
+    area = np.pi * (outer**2 - shaft**2)
+    return float(outer), float(disc.mass / (beam.material.density * area))
+
+
+def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
+    x = disc.at * _MILLI
+    if disc.polar_inertia > 0.0 and disc.mass > 0.0:
+        outer, width = _disc_size(disc, beam)
+        shaft = _radius(beam, disc.at)
+        for low in (shaft, -outer):
+            box = (x - 0.5 * width * _MILLI, low * _MILLI)
+            height = (outer - shaft) * _MILLI
+            ax.add_patch(
+                Rectangle(box, width * _MILLI, height, fc=_DISC, ec="0.2", lw=0.8, zorder=2)
+            )
+        ax.update_datalim([(x, -outer * _MILLI), (x, outer * _MILLI)])
+        _label(ax, x, -1.03 * outer * _MILLI, disc.name, "0.2", "top")
+    else:
+        ax.plot(x, 0.0, "s", color=_DISC, mec="0.2", ms=8, ls="", zorder=6)
+        _label(ax, x, -1.03 * top * _MILLI, disc.name, "0.2", "top")
+
+
+def _radius(beam: Beam, at: float) -> float:
+    """Outer radius of the shaft at a place [m], the larger one at a step."""
+    radii = []
+    for section in beam.sections:
+        left, right = beam.span(section)
+        if left - 1e-9 <= at <= right + 1e-9:
+            radii.append(float(beam.at(np.array([at]), section)[1][0]))
+    return max(radii)
+
+
+def _outermost(beam: Beam, at: float) -> float:
+    """Outer radius of the shaft and its discs at a place [m]."""
+    found = _radius(beam, at)
+    for disc in beam.discs:
+        if disc.polar_inertia > 0.0 and disc.mass > 0.0:
+            outer, width = _disc_size(disc, beam)
+            found = max(found, outer) if abs(at - disc.at) <= 0.5 * width else found
+    return found
+
+
+def _label(ax: Axes, x: float, y: float, text: str, color: str, vertical: str) -> None:
+    if text:
+        ax.text(x, y, caption(text), color=color, fontsize=7.5, ha="center", va=vertical, zorder=7)
+
+
+def _key(ax: Axes, machine: MachineFile) -> None:
+    """Legend of what the file has, below the drawing."""
+    ax.plot([], [], "^", mfc="w", mec=_SUPPORT, ms=8, ls="", label="bearing")
+    if machine.seal:
+        ax.plot([], [], color=_SEAL, lw=3.0, label="seal")
+    if machine.probe:
+        ax.plot([], [], marker="v", color="#0072B2", ls="", label="probe")
+    if machine.rotor.unbalance:
+        ax.plot([], [], "o", color="k", ms=4.5, ls="", label="unbalance")
+    if any(not disc.polar_inertia for disc in machine.rotor.beam.discs):
+        ax.plot([], [], "s", color=_DISC, mec="0.2", ms=8, ls="", label="added mass")
+    if any(not section.stiffness for section in machine.rotor.beam.sections):
+        ax.fill([], [], fc=_SLEEVE, ec="0.25", hatch="////", label="mass without stiffness")
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=6, frameon=False)
+
+
+def machine_campbell(
+    found: Modes,
+    critical: Sequence[CriticalSpeed] = (),
+    continuous: tuple[float, float] | None = None,
+    title: str = "",
+    ax: Axes | None = None,
+) -> Figure:
+    """Damped frequencies over speed by sense of whirl, with the synchronous line.
+
+    Modes with a damping ratio above 0.707 are left out; where a mode grows it is drawn thick.
+    """
+    ax = axes_or_new(ax, (6.4, 4.6))
+    branches = found.oscillating()
+    speed = branches.parameter * RPM
+    limit = _SHOWN * speed[-1]
+    whirl, seen, grows = branches.whirl, set(), False
+    for k in range(branches.eigenvalues.shape[1]):
+        frequency = branches.damped_frequency[:, k] * RPM
+        drawn = (branches.damping_ratio[:, k] < CRITICAL_DAMPING) & (frequency > 0.0)
+        if not (drawn & (frequency < limit)).any():
+            continue
+        for word, look in _WHIRLS.items():
+            here = drawn & (whirl[:, k] == word)
+            # To the next point as well, so that a change of the sense leaves no gap.
+            here[1:] |= (drawn & (whirl[:, k] == word))[:-1] & drawn[1:]
+            if not here.any():
+                continue
+            label = None if word in seen else word
+            seen.add(word)
+            single = here.sum() == 1
+            ax.plot(
+                speed, np.where(here, frequency, np.nan), label=label, marker="." if single else "",
+                **look,  # type: ignore[arg-type]
+            )  # fmt: skip
+        unstable = (branches.growth_rate[:, k] > 0.0) & ~branches.undamped[:, k]
+        grows = grows or bool(unstable.any())
+        ax.plot(speed, np.where(unstable, frequency, np.nan), color="0.4", lw=5.0, alpha=0.45)
+    ends = np.array([0.0, speed[-1]])
+    ax.plot(ends, ends, color="0.35", linewidth=0.8)
+    ax.annotate("1x", (ends[1], ends[1]), xytext=(3, -3), textcoords="offset points", fontsize=8)
+    for number, one in enumerate(critical):
+        label = "critical speed" if number == 0 else None
+        place = one.speed * RPM
+        ax.plot(place, place, "o", color="k", mfc="w", ms=5.5, ls="", label=label, zorder=6)
+    if grows:
+        ax.plot([], [], color="0.4", lw=5.0, alpha=0.45, label="grows (unstable)")
+    _mark_range(ax, continuous)
+    ax.set(
+        xlabel="shaft speed [rpm]", ylabel="damped frequency [cycles per minute]",
+        title=caption(title),
+    )  # fmt: skip
+    ax.set_ylim(0.0, limit)
+    ax.legend(loc="upper left")
+    return figure_of(ax)
+
+
+def _mark_range(ax: Axes, continuous: tuple[float, float] | None) -> None:
+    if continuous is not None:
+        low, high = (one * RPM for one in continuous)
+        ax.axvspan(low, high, color="#009E73", alpha=0.10, zorder=0, label="continuous speeds")
+
+
+def mode_shapes(
+    rotor: Rotor, found: Modes, speed: float, count: int = 6, title: str = ""
+) -> Figure:
+    """Lowest modes in space at the speed nearest to `speed` [rad/s]: orbits and centre line.
+
+    Modes with a damping ratio above 0.707 are left out.
+    """
+    branches = found.oscillating()
+    i = int(np.abs(branches.parameter - speed).argmin())
+    order = np.argsort(branches.undamped_frequency[i])
+    order = [int(k) for k in order if branches.damping_ratio[i, k] < CRITICAL_DAMPING][:count]
+    columns = min(3, max(1, len(order)))
+    rows = max(1, -(-len(order) // columns))
+    heading = f"{title}\n{branches.parameter[i] * RPM:.0f} rpm".strip()
+    with mpl.rc_context(SETTINGS):
+        figure = new_figure(3.4 * columns, 2.9 * rows, heading)
+        for number, k in enumerate(order, start=1):
+            ax: Any = figure.add_subplot(rows, columns, number, projection="3d")
+            mode_shape(rotor, branches, i, k, ax=ax)
+    return figure
+
+
+def mode_shape(
+    rotor: Rotor, found: Modes, index: int, branch: int, title: str = "", ax: Any = None
+) -> Figure:
+    """One mode in space: the orbits of the nodes and the centre line at one instant.
+
+    Parameters
+    ----------
+    rotor : Rotor
+        With positions of its nodes.
+    found : Modes
+    index, branch : int
+        Of the speed and of the mode in `found`.
+    ax : Axes3D, optional
+    """
+    if ax is None:
+        with mpl.rc_context(SETTINGS):
+            ax = new_figure(4.4, 3.6).add_subplot(projection="3d")
+    shape = found.shapes[index, branch]
+    z = np.array([node.position for node in rotor.nodes]) * _MILLI
+    motion = np.array([shape[[x, y]] for x, y in rotor.planes])
+    largest = motion[np.abs(motion).max(axis=1).argmax()]
+    # Turned to the instant of the largest deflection.
+    motion = motion * np.exp(-0.5j * np.angle(np.sum(largest**2)))
+    motion = motion / np.abs(motion).max()
+    turn = np.exp(
+        1j * np.linspace(0.0, 2.0 * np.pi, 49) * np.sign(found.eigenvalues[index, branch].imag)
+    )
+    whirl = str(found.whirl[index, branch])
+    color = _WHIRLS.get(whirl, {"color": "0.3"})["color"]
+    for place, (x, y) in zip(z, motion, strict=True):
+        ax.plot(np.full(turn.size, place), (y * turn).real, (-x * turn).real, color=color, lw=0.6)
+    ax.plot(z, motion[:, 1].real, -motion[:, 0].real, color="k", lw=1.6)
+    ax.plot(z, 0.0 * z, 0.0 * z, color="0.5", lw=0.6, ls=(0, (8, 2, 2, 2)))
+    frequency = found.damped_frequency[index, branch] * RPM
+    decrement = found.logarithmic_decrement[index, branch]
+    text = f"{frequency:.0f} cpm, {whirl}, decrement {decrement:.3f}"
+    ax.set_title(caption(title) or text, fontsize=8.5)
+    ax.set_box_aspect((2.6, 1.0, 1.0), zoom=1.0)
+    ax.set(xlim=(z.min(), z.max()), ylim=(-1, 1), zlim=(-1, 1))
+    ax.set_yticks([])
+    ax.set_zticks([])
+    ax.tick_params(labelsize=7)
+    ax.set_xlabel("from the left end [mm]", fontsize=7.5)
+    return figure_of(ax)
+
+
+def bode_at_probes(
+    responses: Sequence[ProbeResponse],
+    continuous: tuple[float, float] | None = None,
+    title: str = "",
+    ax: tuple[Axes, Axes] | None = None,
+) -> Figure:
+    """Amplitude and phase lag at probes over speed, with the peaks' amplification factors.
+
+    Parameters
+    ----------
+    ax : (Axes, Axes), optional
+        For the amplitude and for the phase.
+    """
+    upper, lower = new_axes(2, 1, (6.6, 5.4), sharex=True)[1][:, 0] if ax is None else ax
+    for number, one in enumerate(responses):
+        look = series_style("", number)
+        speed = one.speed * RPM
+        upper.plot(speed, one.amplitude * MICRO, label=caption(one.name), **look)
+        lag = np.full(one.phase.shape, np.nan)
+        known = np.isfinite(one.phase)
+        lag[known] = np.unwrap(one.phase[known])
+        lower.plot(speed, np.degrees(lag), **look)
+        for peak in one.peaks:
+            factor = peak.amplification_factor
+            place = (peak.speed * RPM, peak.amplitude * MICRO)
+            upper.plot(*place, "o", color=look["color"], mfc="w", ms=4.5, zorder=5)
+            if factor is not None and factor >= 2.5:
+                upper.annotate(
+                    f"{place[0]:.0f} rpm\nAF {factor:.1f}", place, xytext=(6, -2), fontsize=7,
+                    textcoords="offset points", color=look["color"], va="top",
+                )  # fmt: skip
+    for axes in (upper, lower):
+        _mark_range(axes, continuous)
+    upper.set(ylabel="amplitude, zero to peak [µm]", title=caption(title))
+    upper.set_ylim(bottom=0.0)
+    lower.set(xlabel="shaft speed [rpm]", ylabel="phase lag [deg]")
+    lower.yaxis.set_major_locator(mpl.ticker.MultipleLocator(90.0))  # type: ignore[attr-defined]
+    upper.legend(loc="best")
+    return figure_of(upper)
+
+
+def critical_speed_chart(
+    chart: CriticalSpeedMap,
+    principal: Mapping[str, Array] | None = None,
+    speeds: Array | None = None,
+    continuous: tuple[float, float] | None = None,
+    title: str = "",
+    ax: Axes | None = None,
+) -> Figure:
+    """Undamped critical speeds over support stiffness, with the bearings' own stiffness.
+
+    Parameters
+    ----------
+    chart : CriticalSpeedMap
+    principal : mapping of str to (n, 2) array, optional
+        Principal stiffnesses of each support over `speeds` [N/m].
+    speeds : (n,) array, optional
+        [rad/s]
+    """
+    ax = axes_or_new(ax, (6.4, 4.8))
+    for k in range(chart.speed.shape[1]):
+        label = "critical speeds on rising stiffness" if k == 0 else None
+        ax.plot(chart.stiffness, chart.speed[:, k] * RPM, color="k", label=label)
+    if principal is not None and speeds is not None:
+        for number, (name, values) in enumerate(principal.items()):
+            look = dict(series_style("", number + 1), linewidth=1.2)
+            for axis in (0, 1):
+                positive = np.where(values[:, axis] > 0.0, values[:, axis], np.nan)
+                label = caption(name) if axis == 0 else None
+                ax.plot(positive, speeds * RPM, label=label, **look)
+    if continuous is not None:
+        low, high = (one * RPM for one in continuous)
+        ax.axhspan(low, high, color="#009E73", alpha=0.10, zorder=0, label="continuous speeds")
+    ax.set(
+        xscale="log", yscale="log", xlabel="support stiffness [N/m]",
+        ylabel="critical speed [rpm]", title=caption(title),
+    )  # fmt: skip
+    ax.set_xlim(chart.stiffness[0], chart.stiffness[-1])
+    ax.legend(loc="best")
+    return figure_of(ax)
+
+
+def growth_over_speed(
+    found: Mapping[str, Modes],
+    thresholds: Mapping[str, Sequence[ThresholdSpeed]] | None = None,
+    title: str = "",
+    ax: Axes | None = None,
+) -> Figure:
+    """Growth rates of the oscillating modes over speed, one colour for each thermal model.
+
+    Modes of frequencies up to twice the highest speed; the least stable one is drawn thick.
+    """
+    ax = axes_or_new(ax, (6.4, 4.2))
+    least = []
+    for name, every in found.items():
+        look = dict(model_style(name) if len(found) > 1 else _WHIRLS["forward"])
+        branches = every.oscillating()
+        speed = branches.parameter * RPM
+        near = branches.damped_frequency.min(axis=0) < _SHOWN * branches.parameter[-1]
+        rates = np.where(branches.damping_ratio < CRITICAL_DAMPING, branches.growth_rate, np.nan)[
+            :, near
+        ]
+        for rate in rates.T:
+            ax.plot(speed, rate, **{**look, "linewidth": 0.7}, alpha=0.6)
+        if not rates.size:
+            continue
+        top = np.where(np.isfinite(rates), rates, -np.inf).max(axis=1)
+        top = np.where(np.isfinite(top), top, np.nan)
+        least.append(top)
+        label = "least stable mode" if len(found) == 1 else model_label(name)
+        first = list((thresholds or {}).get(name, ()))
+        if first:
+            label += f": threshold {first[0].speed * RPM:.0f} rpm"
+        ax.plot(speed, top, **{**look, "linewidth": 2.2}, label=label)
+        for one in first:
+            ax.plot(one.speed * RPM, 0.0, "x", color="#8c1d2f", ms=8, mew=2, zorder=6)
+    values = np.concatenate(least) if least else np.zeros(1)
+    reach = max(float(np.nanmax(np.abs(values), initial=0.0)), 1e-3)
+    ax.set_ylim(-1.6 * reach, max(0.25 * reach, 1.3 * float(np.nanmax(values, initial=0.0))))
+    ax.axhspan(0.0, 10.0 * reach, color="#f2d7d9", zorder=0)
+    ax.axhline(0.0, color="#8c1d2f", linewidth=1.0)
+    ax.set(xlabel="shaft speed [rpm]", ylabel="growth rate [1/s]", title=caption(title))
+    ax.legend(loc="lower left")
+    return figure_of(ax)
