@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import AbstractContextManager
 from functools import cache, wraps
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
@@ -21,12 +22,17 @@ def _controller() -> ThreadpoolController:
     return ThreadpoolController()
 
 
+def one_blas_thread() -> AbstractContextManager[object]:
+    """Context in which the BLAS is held to one thread."""
+    return _controller().limit(limits=1, user_api="blas")
+
+
 def on_one_blas_thread(function: Callable[P, _Result]) -> Callable[P, _Result]:
     """Run a function with the BLAS held to one thread."""
 
     @wraps(function)
     def held(*args: P.args, **kwargs: P.kwargs) -> _Result:
-        with _controller().limit(limits=1, user_api="blas"):
+        with one_blas_thread():
             return function(*args, **kwargs)
 
     return held

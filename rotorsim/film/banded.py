@@ -8,13 +8,12 @@ doubles the band and keeps it exact. Columns in which nothing is solved are left
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
-from threadpoolctl import ThreadpoolController
 
+from ..threads import one_blas_thread
 from .kernels import kernel
 from .operator import FilmOperator
 
@@ -76,17 +75,11 @@ def factor_operator(operator: FilmOperator, active: Flags) -> _FilmFactor:
     if not np.isfinite(band.sum()):
         raise SingularFilmError("the film's matrix is not finite")
     # On so narrow a band several threads only wait for each other.
-    with _threads().limit(limits=1, user_api="blas"):
+    with one_blas_thread():
         factor, info = _factorise(band.T, lower=1, overwrite_ab=1)
     if info != 0:
         raise SingularFilmError(f"the film's matrix is not positive definite (pivot {info})")
     return _FilmFactor(factor=factor, order=order, active=active)
-
-
-@lru_cache(maxsize=1)
-def _threads() -> ThreadpoolController:
-    """Thread pools of the linear algebra libraries, looked up once."""
-    return ThreadpoolController()
 
 
 def column_order(interior: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
