@@ -29,16 +29,10 @@ from rotorsim.model import (
     ThermalModel,
     ThermalSettings,
 )
-from rotorsim.orbit import (
-    Orbit,
-    OrbitProblem,
-    SolvedFilmForce,
-    SpeedSchedule,
-    film_force_map,
-    find_equilibrium,
-    loaded_film,
-    simulate,
-)
+from rotorsim.orbit import Orbit, OrbitProblem, SpeedSchedule, simulate
+from rotorsim.orbit.film_force import SolvedFilmForce, loaded_film
+from rotorsim.orbit.film_map import film_force_map
+from rotorsim.orbit.forces import find_equilibrium
 from rotorsim.rotor import Rotor
 
 SPEED, LOAD, MASS = 12000.0 * math.pi / 30.0, 1500.0, 135.0

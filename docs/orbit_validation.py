@@ -19,24 +19,19 @@ from rotorsim.film.layers import isoviscous_layers
 from rotorsim.film.problem import film_problem, film_state
 from rotorsim.model import Case, LoadTarget, MeshSize
 from rotorsim.orbit import (
-    BearingForce,
-    FilmMapForce,
-    ForceMap,
     Orbit,
     OrbitProblem,
     ShortBearingForce,
-    SolvedFilmForce,
     SpeedSchedule,
     analyse,
-    find_equilibrium,
-    growth_rate,
-    linearize_force,
-    loaded_film,
-    operating_film,
     simulate,
     steady_part,
 )
-from rotorsim.orbit.short_bearing import short_bearing_impedance
+from rotorsim.orbit.film_force import SolvedFilmForce, loaded_film, operating_film
+from rotorsim.orbit.force_map import FilmMapForce, ForceMap
+from rotorsim.orbit.forces import BearingForce, find_equilibrium, linearize_force
+from rotorsim.orbit.kernels import short_bearing_impedance
+from rotorsim.orbit.modes import growth_rate
 from rotorsim.rotor import Rotor
 
 SPEED, LOAD, MASS = 12000.0 * math.pi / 30.0, 1500.0, 135.0

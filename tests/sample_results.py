@@ -10,7 +10,8 @@ import xarray as xr
 from rotorsim.bearing.operating_point import FilmFields, OperatingPoint
 from rotorsim.machine.branches import Modes
 from rotorsim.machine.thresholds import ThresholdSpeed
-from rotorsim.orbit import Orbit, OrbitStatus
+from rotorsim.orbit import Orbit
+from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.status import SolveStatus
 from rotorsim.study.stability import Campbell
 

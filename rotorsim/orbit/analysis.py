@@ -1,30 +1,187 @@
-"""What an orbit shows, in numbers: how it ends, how it grows, how far it swings."""
+"""Analysis of an orbit: what its last part is, how small motions grow, how far it swings, whirl."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import InputError
 from .modes import Growth, growth_rate
 from .orbit import Orbit, OrbitStatus
-from .recognition import Recognition, recognise, steady_part
-from .spectrum import Cascade, Ellipse, Spectrum, cascade, orbit_ellipse, spectrum
+from .spectrum import (
+    Cascade,
+    Ellipse,
+    Spectrum,
+    cascade,
+    orbit_ellipse,
+    poincare_points,
+    spectrum,
+    whirl_frequency_ratio,
+)
 
-SMALL_MOTION = 0.1
+Array = NDArray[np.float64]
+
+_SMALL_MOTION = 0.1
 """Distance from equilibrium over clearance up to which a growth rate is measured."""
 WHIRLING = 0.05
 """Subsynchronous half axis over clearance that counts as whirl in a run through the speeds."""
 _SUBSYNCHRONOUS = (0.15, 0.85)
-_LEAST_REVOLUTIONS = 4
+_GROWTH_REVOLUTIONS = 4
 _CASCADE_REVOLUTIONS = 16
 _CASCADE_BLOCKS = (16, 32)
 """Revolutions behind one spectrum of a cascade that is shown: of a short and of a long run."""
 
+_AT_REST = 1e-4
+"""Motion over clearance that counts as none."""
+_STEADY = 2e-3
+"""Relative change of amplitude, and of mean position over amplitude, that counts as none."""
+_RECOGNISED_REVOLUTIONS = 16
+_BLOCK = 4
+"""Revolutions in which amplitudes are taken to find where the steady part begins."""
+_LONGEST_PERIOD = 8
+
 
 @dataclass(frozen=True)
-class WhirlRange:
+class Recognition:
+    """Verdict on a run's last part.
+
+    Attributes
+    ----------
+    status : OrbitStatus
+        ``settled``, ``periodic``, ``limit_cycle``, ``quasi_periodic`` or ``completed``.
+    message : str
+    steady_from : int or None
+        First sample of the steady part; None where there is none.
+    period : int or None
+        Of a periodic orbit, in turns of the shaft.
+    whirl_frequency_ratio : float or None
+        Of a steady whirl.
+    """
+
+    status: OrbitStatus
+    message: str
+    steady_from: int | None = None
+    period: int | None = None
+    whirl_frequency_ratio: float | None = None
+
+
+def recognise(orbit: Orbit) -> Recognition:
+    """Recognise what the second half of a run at constant speed has come to.
+
+    Notes
+    -----
+    Amplitudes (root mean square about the mean) of the third and the last quarter are compared:
+    steady means equal to 0.2 %. A steady orbit is periodic if the points at one shaft angle repeat
+    within 0.2 % of the amplitude after 1 to 8 turns; else it whirls at a frequency of its own.
+    """
+    size, per_turn = orbit.t.size, orbit.samples_per_revolution
+    if size < _RECOGNISED_REVOLUTIONS * per_turn:
+        return Recognition(OrbitStatus.COMPLETED, "too short to tell what it comes to")
+    third, last = orbit.part(size // 2, 3 * size // 4), orbit.part(3 * size // 4)
+    before, after = _swing(third), _swing(last)
+    clearance = orbit.radial_clearance
+    if after < _AT_REST * clearance and after <= max(before, 1e-8 * clearance):
+        return Recognition(OrbitStatus.SETTLED, "at rest", steady_from=_rest_from(orbit))
+    drift = abs(_middle(last)[0] - _middle(third)[0])
+    period = _period(last, after) if orbit.forced else None
+    if period is None and (abs(after - before) > _STEADY * after or drift > 5 * _STEADY * after):
+        trend = "growing" if after > before else "decaying"
+        return Recognition(OrbitStatus.COMPLETED, f"still {trend}")
+    # At least what was found steady above.
+    start = _steady_from(orbit, after, size // 2 if period is None else 3 * size // 4)
+    if period is not None:
+        turns = "turn" if period == 1 else "turns"
+        message = f"repeats after {period} {turns} of the shaft"
+        return Recognition(OrbitStatus.PERIODIC, message, start, period)
+    ratio = whirl_frequency_ratio(last)
+    if ratio is not None:
+        # beneath a steady unbalance response a whirl may still be fading or growing
+        earlier, later = (orbit_ellipse(p, abs(ratio)).semi_major for p in (third, last))
+        if abs(later - earlier) > 0.01 * later:
+            trend = "growing" if later > earlier else "decaying"
+            return Recognition(OrbitStatus.COMPLETED, f"whirl at {ratio:.4f} still {trend}")
+        if any(abs(abs(ratio) * orbit.speed[0] - load) < 1e-3 * load for load in orbit.forcing):
+            message = f"follows the load at {abs(ratio):.4f} of shaft speed"
+            return Recognition(OrbitStatus.PERIODIC, message, start, whirl_frequency_ratio=ratio)
+    shaken = orbit.forced and orbit_ellipse(last).semi_major > 0.01 * after
+    status = OrbitStatus.QUASI_PERIODIC if shaken else OrbitStatus.LIMIT_CYCLE
+    message = "steady whirl" if ratio is None else f"steady whirl at {ratio:.4f} of shaft speed"
+    return Recognition(status, message, start, whirl_frequency_ratio=ratio)
+
+
+def steady_part(orbit: Orbit) -> Orbit | None:
+    """Cut off the transient; None where the run has not become steady."""
+    start = recognise(orbit).steady_from
+    return None if start is None else orbit.part(start)
+
+
+def once_per_turn(orbit: Orbit) -> Array | None:
+    """Positions at whole turns of the shaft in the steady part (Poincare points), (k, 2) [m].
+
+    None where the run does not end in a steady motion.
+    """
+    if orbit.status not in (
+        OrbitStatus.PERIODIC, OrbitStatus.LIMIT_CYCLE, OrbitStatus.QUASI_PERIODIC,
+    ):  # fmt: skip
+        return None
+    steady = steady_part(orbit)
+    if steady is None or not steady.t.size:
+        return None
+    points = poincare_points(steady)
+    return np.column_stack([points.x, points.y])
+
+
+def _swing(orbit: Orbit) -> float:
+    """Root mean square distance from the mean position [m]."""
+    mean, z, weights = _middle(orbit)
+    return float(np.sqrt(np.sum(weights * np.abs(z - mean) ** 2)))
+
+
+def _middle(orbit: Orbit) -> tuple[complex, NDArray[np.complex128], Array]:
+    """Mean of z = x + i y, z, and the weights: smooth, for windows hold no whole whirl cycles."""
+    count = orbit.t.size
+    weights = (1.0 - np.cos(2.0 * np.pi * (np.arange(count) + 0.5) / count)) / count
+    z = orbit.x + 1j * orbit.y
+    return complex(np.sum(weights * z)), z, weights
+
+
+def _period(orbit: Orbit, amplitude: float) -> int | None:
+    points = poincare_points(orbit)
+    for turns in range(1, _LONGEST_PERIOD + 1):
+        if points.t.size < 2 * turns + 1:
+            return None
+        # the first against the last of its kind as well: a slow drift is no repetition
+        same_phase = (points.t.size - 1) // turns * turns
+        gaps = np.hypot(points.x[turns:] - points.x[:-turns], points.y[turns:] - points.y[:-turns])
+        whole = np.hypot(points.x[same_phase] - points.x[0], points.y[same_phase] - points.y[0])
+        if max(float(np.max(gaps)), float(whole)) < _STEADY * amplitude:
+            return turns
+    return None
+
+
+def _rest_from(orbit: Orbit) -> int:
+    """First sample after the last one that is away from the end position."""
+    away = np.hypot(orbit.x - orbit.x[-1], orbit.y - orbit.y[-1])
+    outside = np.flatnonzero(away > _AT_REST * orbit.radial_clearance)
+    return int(outside[-1]) + 1 if outside.size else 0
+
+
+def _steady_from(orbit: Orbit, amplitude: float, known: int) -> int:
+    """First sample of the stretch before `known` whose blocks all have that amplitude (to 5 %)."""
+    block = _BLOCK * orbit.samples_per_revolution
+    start = known
+    while start >= block:
+        swing = _swing(orbit.part(start - block, start))
+        if abs(swing - amplitude) > 0.05 * amplitude:
+            break
+        start -= block
+    return start
+
+
+@dataclass(frozen=True)
+class _WhirlRange:
     """Where a run through the speeds whirls below the shaft's frequency.
 
     Attributes
@@ -64,7 +221,7 @@ class OrbitAnalysis:
         Of the steady part, at the shaft's frequency; None where there is none.
     min_film, min_film_time : float
         Smallest film thickness and when [m, s].
-    whirl_range : WhirlRange or None
+    whirl_range : _WhirlRange or None
         In a run through the speeds.
     """
 
@@ -75,7 +232,7 @@ class OrbitAnalysis:
     synchronous: Ellipse | None
     min_film: float
     min_film_time: float
-    whirl_range: WhirlRange | None
+    whirl_range: _WhirlRange | None
 
 
 def analyse(orbit: Orbit) -> OrbitAnalysis:
@@ -92,21 +249,21 @@ def analyse(orbit: Orbit) -> OrbitAnalysis:
     least = int(np.argmin(orbit.min_film))
     return OrbitAnalysis(
         recognition=found,
-        growth=initial_growth(orbit) if orbit.constant_speed else None,
+        growth=_initial_growth(orbit) if orbit.constant_speed else None,
         amplitude=0.5 * float(max(np.ptp(steady.x), np.ptp(steady.y))),
         whirl=whirl,
         synchronous=synchronous,
         min_film=float(orbit.min_film[least]),
         min_film_time=float(orbit.t[least]),
-        whirl_range=None if orbit.constant_speed else whirl_range(orbit),
+        whirl_range=None if orbit.constant_speed else _whirl_range(orbit),
     )
 
 
-def initial_growth(orbit: Orbit) -> Growth | None:
+def _initial_growth(orbit: Orbit) -> Growth | None:
     """Growth of the small motions with which a run begins, at constant speed.
 
     Linear coefficients know no large motions: the whole run counts. With a nonlinear film only the
-    part counts that stays within `SMALL_MOTION` of the equilibrium, and only without unbalance and
+    part counts that stays within `_SMALL_MOTION` of the equilibrium, and only without unbalance and
     loads.
     """
     part = orbit
@@ -115,9 +272,9 @@ def initial_growth(orbit: Orbit) -> Growth | None:
             return None  # what is forced cannot be told from what is free
         away = np.hypot(orbit.x - orbit.equilibrium[0], orbit.y - orbit.equilibrium[1])
         # A run that begins right at the limit counts, whatever the rounding of its equilibrium.
-        large = np.flatnonzero(away > (1.0 + 1e-6) * SMALL_MOTION * orbit.radial_clearance)
+        large = np.flatnonzero(away > (1.0 + 1e-6) * _SMALL_MOTION * orbit.radial_clearance)
         part = orbit.part(0, int(large[0]) if large.size else None)
-        if part.t.size < _LEAST_REVOLUTIONS * orbit.samples_per_revolution:
+        if part.t.size < _GROWTH_REVOLUTIONS * orbit.samples_per_revolution:
             return None
     try:
         return growth_rate(part)
@@ -151,20 +308,20 @@ def speed_cascade(orbit: Orbit) -> Cascade | None:
     return rows if np.ptp(rows.speed) > 0.0 else None
 
 
-def whirl_range(orbit: Orbit) -> WhirlRange | None:
+def _whirl_range(orbit: Orbit) -> _WhirlRange | None:
     """Where a run through the speeds whirls; None where it nowhere does, or is too short."""
     try:
         rows = cascade(orbit, _CASCADE_REVOLUTIONS)
     except InputError:
         return None
-    below = subsynchronous(rows)
+    below = _subsynchronous(rows)
     amplitude = below.max(axis=1)
     whirls = np.flatnonzero(amplitude > WHIRLING * orbit.radial_clearance)
     if not whirls.size:
         return None
     top = int(np.argmax(amplitude))
     line = int(np.argmax(below[top]))
-    return WhirlRange(
+    return _WhirlRange(
         first_speed=float(rows.speed[whirls[0]]),
         last_speed=float(rows.speed[whirls[-1]]),
         strongest_speed=float(rows.speed[top]),
@@ -173,7 +330,7 @@ def whirl_range(orbit: Orbit) -> WhirlRange | None:
     )
 
 
-def subsynchronous(rows: Cascade) -> np.ndarray:
+def _subsynchronous(rows: Cascade) -> np.ndarray:
     """Amplitudes of a cascade with all but the orders of whirl set to zero."""
     low, high = _SUBSYNCHRONOUS
     return np.where((rows.order > low) & (rows.order < high), rows.amplitude, 0.0)

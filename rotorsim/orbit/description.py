@@ -12,7 +12,7 @@ from .analysis import WHIRLING, analyse
 from .orbit import Orbit
 from .spectrum import Ellipse
 
-MICRO = 1e6
+_MICRO = 1e6
 
 
 def describe_orbit(orbit: Orbit) -> dict[str, Any]:
@@ -118,7 +118,7 @@ def orbit_texts(said: Mapping[str, Any]) -> dict[str, str]:
     return {
         "model": said["thermal_model"],
         "run": said["kind"],
-        "clearance": number(said["radial_clearance"] * MICRO),
+        "clearance": number(said["radial_clearance"] * _MICRO),
         "speed": f"{last:.0f}" if steady else f"{first:.0f} to {last:.0f}",
         "turns": number(said["revolutions"]),
         "eccentricity": number(said["max_eccentricity_ratio"], 3),
@@ -128,7 +128,7 @@ def orbit_texts(said: Mapping[str, Any]) -> dict[str, str]:
     }
 
 
-def orbit_rows(said: Mapping[str, Any]) -> list[Row]:
+def _orbit_rows(said: Mapping[str, Any]) -> list[Row]:
     """What an orbit comes to, row by row, from what `describe_orbit` gives."""
     texts = orbit_texts(said)
     rows = [
@@ -138,9 +138,9 @@ def orbit_rows(said: Mapping[str, Any]) -> list[Row]:
         Row("largest eccentricity ratio", texts["eccentricity"]),
         Row("growth rate of small motions", texts["growth"], "1/s"),
         Row("whirl frequency ratio", number(said["whirl_frequency_ratio"])),
-        Row("amplitude", number(said["amplitude"] * MICRO), "µm"),
+        Row("amplitude", number(said["amplitude"] * _MICRO), "µm"),
         Row("whirl ellipse", ellipse_text(said["whirl"] or said["synchronous"])),
-        Row("thinnest film", number(said["min_film"] * MICRO), "µm"),
+        Row("thinnest film", number(said["min_film"] * _MICRO), "µm"),
         Row("outcome", texts["outcome"]),
     ]
     return [row for row in rows if row.value != "-"]
@@ -150,7 +150,7 @@ def ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
     """Half axes in µm and the sense; a dash without an ellipse."""
     if ellipse is None:
         return "-"
-    axes = (number(ellipse[key] * MICRO, 3) for key in ("semi_major", "semi_minor"))
+    axes = (number(ellipse[key] * _MICRO, 3) for key in ("semi_major", "semi_minor"))
     return f"{' x '.join(axes)} {ellipse['direction']}"
 
 
@@ -163,7 +163,7 @@ def whirl_range_text(found: Mapping[str, Any]) -> str:
     return (
         f"whirls by more than {100.0 * WHIRLING:.0f} % of the clearance from {first} to {last} rpm,"
         f" most at {most} rpm: "
-        f"{number(found['amplitude'] * MICRO, 3)} µm at "
+        f"{number(found['amplitude'] * _MICRO, 3)} µm at "
         f"{number(found['frequency'] / (2.0 * math.pi))} Hz"
     )
 
@@ -173,4 +173,4 @@ def orbit_html(orbit: Orbit) -> str:
     said = describe_orbit(orbit)
     (name,) = run_names([orbit])
     notes = (orbit.message, orbit.note)
-    return result_html(f"Orbit: {run_title(name)}", facts_html(orbit_rows(said)), notes=notes)
+    return result_html(f"Orbit: {run_title(name)}", facts_html(_orbit_rows(said)), notes=notes)

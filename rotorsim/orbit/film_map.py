@@ -233,7 +233,7 @@ class SqueezeFilm:
     _films: tuple[_RestingFilm, ...] = field(default=(), init=False, repr=False)
 
     def impedance(self, eccentricity_ratio: float, angle: float) -> tuple[float, float]:
-        """Radial and tangential impedance (see `force_map.Impedance`)."""
+        """Radial and tangential impedance (see `rotorsim.orbit.force_map`)."""
         if not self._films or self._films[0].eccentricity_ratio != eccentricity_ratio:
             thin = eccentricity_ratio > _THIN
             around, along = self.mesh or (_THIN_MESH if thin else _MESH)

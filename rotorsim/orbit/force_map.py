@@ -1,7 +1,7 @@
 """The film's force at any position and velocity, from a map over two numbers.
 
 An isoviscous ruptured film without supply pressure is a pure squeeze film in the frame that turns
-at half the shaft's speed (see `rotorsim.orbit.short_bearing`). Reynolds and half-Sommerfeld
+at half the shaft's speed (see `rotorsim.orbit.kernels`). Reynolds and half-Sommerfeld
 conditions are homogeneous of first degree in pressure, so the force is
 
     F = 2 mu |v_s| L (R/c)^3 W(eps, alpha)
@@ -35,7 +35,7 @@ from . import kernels
 from .forces import CompiledForce, squeeze_force_scale
 
 Array = NDArray[np.float64]
-Impedance = Callable[[float, float], tuple[float, float]]
+_Impedance = Callable[[float, float], tuple[float, float]]
 """(eccentricity ratio, alpha [rad]) -> (radial, tangential) in units of 2 mu |v_s| L (R/c)^3."""
 
 _MIRRORED_ROWS = 8
@@ -84,7 +84,7 @@ class ForceMap:
     @classmethod
     def build(
         cls,
-        impedance: Impedance,
+        impedance: _Impedance,
         *,
         max_eccentricity_ratio: float = 0.9995,
         rows: int = 48,
@@ -97,7 +97,7 @@ class ForceMap:
         Parameters
         ----------
         impedance : callable
-            (eccentricity ratio, alpha) -> (radial, tangential), see `Impedance`. With
+            (eccentricity ratio, alpha) -> (radial, tangential), see `_Impedance`. With
             `symmetric` it is called for alpha from 0 to pi only, row by row, alpha ascending: a
             film solver may start each call from the one before.
         max_eccentricity_ratio : float
@@ -184,7 +184,7 @@ class FilmMapForce:
         return self.compiled().evaluate(x, y, vx, vy, speed)
 
 
-def _row(impedance: Impedance, eps: float, columns: int, symmetric: bool) -> Array:
+def _row(impedance: _Impedance, eps: float, columns: int, symmetric: bool) -> Array:
     """Radial and tangential impedance over one turn, (2, columns)."""
     angles = _angles(eps, columns)
     if not symmetric:

@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from ..errors import InputError
-from .equilibrium import find_equilibrium
-from .forces import ActuatedFilm, LinearForce
-from .loads import BaseMotion, HarmonicForce, load_on_rotor, pack_loads
+from ..model.loads import BaseMotion, HarmonicForce
+from .analysis import recognise
+from .equations import FilmSeries, Rates, initial_state, load_on_rotor, pack_loads, right_hand_side
+from .forces import ActuatedFilm, LinearForce, find_equilibrium
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import Method, OrbitProblem
-from .recognition import recognise
-from .right_hand_side import FilmSeries, Rates, initial_state, right_hand_side
 
 Array = NDArray[np.float64]
 
@@ -35,7 +34,7 @@ class _Solution:
     y: Array
     status: int
     message: str = ""
-    touch: tuple[float, float, float] | None = None
+    contact: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -47,7 +46,7 @@ class _Run:
     rates: Rates
     film: FilmSeries
     tolerance: Array
-    touch: Callable[[float, Array], float]
+    contact: Callable[[float, Array], float]
 
 
 def simulate(
@@ -169,7 +168,7 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
                 state,
                 method=problem.method.value,
                 t_eval=times,
-                events=run.touch if problem.stop_at_contact else None,
+                events=run.contact if problem.stop_at_contact else None,
                 rtol=problem.tolerance,
                 atol=run.tolerance,
                 **({} if problem.method is Method.DOP853 else {"jac": _jacobian(run)}),
@@ -180,7 +179,7 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
             return replace(failed, message=f"{error}.")
     if found.status == 1:
         when, where = float(found.t_events[0][0]), found.y_events[0][0]
-        return _Solution(found.t, found.y, 1, touch=(when, float(where[0]), float(where[1])))
+        return _Solution(found.t, found.y, 1, contact=(when, float(where[0]), float(where[1])))
     # the list is empty where the first step already fails
     y = found.y if len(found.t) else failed.y
     good = int(np.sum(np.all(np.isfinite(y), axis=0)))
@@ -232,14 +231,14 @@ def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
 
     plain = problem.bearing is None or (problem.bearing.is_plain and problem.bearing.is_symmetric)
 
-    def touch(_t: float, s: Array) -> float:
+    def contact(_t: float, s: Array) -> float:
         if plain:
             return clearance - least - math.hypot(s[0], s[1])
         return float(problem.film_at(s[:1], s[1:2])[0]) - least
 
-    touch.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
-    touch.direction = -1.0  # pyright: ignore[reportFunctionMemberAccess]
-    if problem.stop_at_contact and touch(0.0, state) <= 0.0:
+    contact.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
+    contact.direction = -1.0  # pyright: ignore[reportFunctionMemberAccess]
+    if problem.stop_at_contact and contact(0.0, state) <= 0.0:
         raise InputError(
             "the journal must start inside the clearance circle "
             f"(film above {least:g} m, clearance {clearance:g} m)",
@@ -247,7 +246,7 @@ def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
             value=problem.initial_displacement,
         )
     rates, film = right_hand_side(problem)
-    return _Run(problem, equilibrium, rates, film, tolerance, touch), state
+    return _Run(problem, equilibrium, rates, film, tolerance, contact), state
 
 
 def _actuator_force(problem: OrbitProblem, motion: Array, y: Array) -> Array:
@@ -295,8 +294,8 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
     if isinstance(problem.force, ActuatedFilm):
         film = film - actuator
     status, message, events = OrbitStatus.COMPLETED, "", ()
-    if solution.touch is not None:
-        when, x, y_end = solution.touch
+    if solution.contact is not None:
+        when, x, y_end = solution.contact
         status = OrbitStatus.TOUCH_DOWN
         message = (
             f"film below {problem.minimum_film * 1e6:.3g} µm after {when:.6g} s "

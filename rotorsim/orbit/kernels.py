@@ -1,7 +1,16 @@
-"""Compiled right-hand side: film force, rotor, loads.
+"""Compiled film forces on the journal: linear, short bearing, force map.
 
-One function for all, so that SciPy calls compiled code once per evaluation; numbers travel in
-plain arrays, packed by `rotorsim.orbit.forces`, `loads` and `integrate`.
+Numbers travel in plain arrays, packed by `rotorsim.orbit.forces` and `force_map`.
+
+The short bearing with a ruptured film has a closed form. In the frame that turns at half the
+shaft's speed an isoviscous film is squeezed and nothing else: with e the journal's eccentricity, v
+its velocity and
+
+    v_s = v - (w/2) k x e
+
+Reynolds' equation reads div(h^3 grad p)/(12 mu) = -v_s . n(theta). The short film's pressure is
+positive just where v_s . n > 0, so half-Sommerfeld and Reynolds conditions are the same film.
+Ocvirk (1952); Childs, Moes & van Leeuwen (1977) for the pure-squeeze form.
 """
 
 from __future__ import annotations
@@ -12,7 +21,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..compiled import compiled
-from .short_bearing import short_bearing_impedance
 
 Array = NDArray[np.float64]
 
@@ -21,7 +29,62 @@ LINEAR, SHORT_BEARING, FORCE_MAP = 0, 1, 2
 
 
 @compiled()
-def linear_force(
+def _squeeze_integrals(eccentricity_ratio: float, angle: float) -> tuple[float, float]:
+    """Integrals of cos(t - a) (cos t, sin t)/(1 - eps cos t)^3 over a - pi/2 to a + pi/2.
+
+    Sommerfeld's substitution 1 - eps cos t = (1 - eps^2)/(1 + eps cos g) makes them elementary.
+
+    Parameters
+    ----------
+    eccentricity_ratio : float
+        Below 1.
+    angle : float
+        From the eccentricity to the squeeze velocity, in the direction of rotation [rad].
+    """
+    eps = eccentricity_ratio
+    root = math.sqrt(1.0 - eps * eps)
+    ca, sa = math.cos(angle), math.sin(angle)
+    # limits t = a -+ pi/2: cos t = +-sin a, sin t = -+cos a
+    s1, c1 = -root * ca / (1.0 - eps * sa), (sa - eps) / (1.0 - eps * sa)
+    s2, c2 = root * ca / (1.0 + eps * sa), (-sa - eps) / (1.0 + eps * sa)
+    g1, g2 = math.atan2(s1, c1), math.atan2(s2, c2)
+    span = g2 - g1
+    if span <= 0.0:
+        span += 2.0 * math.pi
+    ds = s2 - s1
+    dsc = s2 * c2 - s1 * c1
+    cc = ((eps * eps + 0.5) * span + 2.0 * eps * ds + 0.5 * dsc) / root**5
+    cs = (eps * (c1 - c2) + 0.5 * (s2 * s2 - s1 * s1)) / root**4
+    ss = 0.5 * (span - dsc) / root**3
+    return ca * cc + sa * cs, ca * cs + sa * ss
+
+
+@compiled()
+def short_bearing_impedance(
+    eccentricity_ratio: float, angle: float, slenderness: float
+) -> tuple[float, float]:
+    """Dimensionless film force on the journal, radial and tangential.
+
+    Parameters
+    ----------
+    eccentricity_ratio : float
+    angle : float
+        From the eccentricity to the squeeze velocity [rad].
+    slenderness : float
+        L/D [-].
+
+    Returns
+    -------
+    radial, tangential : float
+        In units of 2 mu |v_s| L (R/c)^3, along the eccentricity and 90 degrees ahead of it.
+    """
+    radial, tangential = _squeeze_integrals(eccentricity_ratio, angle)
+    factor = -2.0 * slenderness * slenderness
+    return factor * radial, factor * tangential
+
+
+@compiled()
+def _linear_force(
     x: float, y: float, vx: float, vy: float, speed: float, numbers: Array, table: Array
 ) -> tuple[float, float]:
     """Evaluate static force - K (q - q0) - C v with K, C, q0 splined over uniform speeds.
@@ -104,7 +167,7 @@ def _cubic_weights(s: float) -> tuple[float, float, float, float]:
 
 
 @compiled()
-def squeeze_force(
+def _squeeze_force(
     kind: int,
     x: float,
     y: float,
@@ -151,8 +214,8 @@ def film_force(
 ) -> tuple[float, float]:
     """Film force on the journal [N]."""
     if kind == LINEAR:
-        return linear_force(x, y, vx, vy, speed, numbers, table)
-    return squeeze_force(kind, x, y, vx, vy, speed, numbers, table)
+        return _linear_force(x, y, vx, vy, speed, numbers, table)
+    return _squeeze_force(kind, x, y, vx, vy, speed, numbers, table)
 
 
 @compiled()
@@ -163,138 +226,3 @@ def film_force_series(kind: int, motion: Array, numbers: Array, table: Array) ->
         m = motion[i]
         out[i] = film_force(kind, m[0], m[1], m[2], m[3], m[4], numbers, table)
     return out
-
-
-@compiled()
-def shaft(t: float, schedule: Array) -> tuple[float, float, float]:
-    """Angle, speed and acceleration of the shaft; rows: time, speed, angle, acceleration."""
-    i = schedule.shape[0] - 2
-    while i > 0 and t < schedule[i, 0]:
-        i -= 1
-    since = t - schedule[i, 0]
-    a = schedule[i, 3]
-    w = schedule[i, 1]
-    return schedule[i, 2] + since * (w + 0.5 * a * since), w + a * since, a
-
-
-@compiled()
-def _add_loads(t: float, force: Array, shapes: Array, times: Array) -> None:
-    for k in range(times.shape[0]):
-        if times[k, 1] <= t < times[k, 2]:
-            if times[k, 0] == 0.0:
-                c, s = 1.0, 0.0
-            elif times[k, 0] == 1.0:
-                c, s = math.cos(times[k, 3] * t), math.sin(times[k, 3] * t)
-            else:
-                c, s = math.sin(times[k, 3] * (t - times[k, 1])), 0.0
-            for i in range(force.size):
-                force[i] += shapes[k, 0, i] * c + shapes[k, 1, i] * s
-
-
-@compiled()
-def load_series(t: Array, shapes: Array, times: Array) -> Array:
-    """Loads on every degree of freedom (n, 2k) [N] at times t (n,); see `loads.pack_loads`."""
-    out = np.zeros((t.size, shapes.shape[2]))
-    for i in range(t.size):
-        _add_loads(t[i], out[i], shapes, times)
-    return out
-
-
-@compiled()
-def motion_rates(
-    t: float,
-    state: Array,
-    fx: float,
-    fy: float,
-    rotor: Array,
-    unbalance: Array,
-    schedule: Array,
-    shapes: Array,
-    times: Array,
-    controller: Array,
-    reference: Array,
-) -> Array:
-    """State rates from a known film force on the journal.
-
-    state: displacements, velocities, controller states; rotor: inverse mass, damping, stiffness,
-    gyroscopic, circulatory matrix; unbalance: (n_nodes, 3) mass times radius, phase, place of x;
-    shapes, times: see
-    `loads.pack_loads`; controller: blocks [[A, B], [C, D]].
-    """
-    size = rotor.shape[1]
-    rates = np.empty(state.size)
-    force = np.zeros(size)
-    phi, w, alpha = shaft(t, schedule)
-    force[0], force[1] = fx, fy
-    for k in range(unbalance.shape[0]):
-        if unbalance[k, 0] != 0.0:
-            c, s = math.cos(phi + unbalance[k, 1]), math.sin(phi + unbalance[k, 1])
-            x = int(unbalance[k, 2])
-            force[x] += unbalance[k, 0] * (w * w * c + alpha * s)
-            force[x + 1] += unbalance[k, 0] * (w * w * s - alpha * c)
-    _add_loads(t, force, shapes, times)
-    extra = state.size - 2 * size
-    if controller.shape[0] > 0:
-        _add_control(state, force, rates, controller, reference, size, extra)
-    for i in range(size):
-        for j in range(size):
-            force[i] -= (rotor[1, i, j] + w * rotor[3, i, j]) * state[size + j]
-            force[i] -= (rotor[2, i, j] + w * rotor[4, i, j]) * state[j]
-    for i in range(size):
-        rates[i] = state[size + i]
-        total = 0.0
-        for j in range(size):
-            total += rotor[0, i, j] * force[j]
-        rates[size + i] = total
-    return rates
-
-
-@compiled()
-def _add_control(
-    state: Array,
-    force: Array,
-    rates: Array,
-    controller: Array,
-    reference: Array,
-    size: int,
-    extra: int,
-) -> None:
-    inputs = np.empty(extra + 4)
-    inputs[:extra] = state[2 * size :]
-    inputs[extra] = state[0] - reference[0]
-    inputs[extra + 1] = state[1] - reference[1]
-    inputs[extra + 2] = state[size]
-    inputs[extra + 3] = state[size + 1]
-    for i in range(extra + 2):
-        total = 0.0
-        for j in range(extra + 4):
-            total += controller[i, j] * inputs[j]
-        if i < extra:
-            rates[2 * size + i] = total
-        else:
-            force[i - extra] += total
-
-
-@compiled()
-def rates(
-    t: float,
-    state: Array,
-    kind: int,
-    numbers: Array,
-    table: Array,
-    rotor: Array,
-    unbalance: Array,
-    schedule: Array,
-    shapes: Array,
-    times: Array,
-    controller: Array,
-    reference: Array,
-) -> Array:
-    """State rates with the film force of one of the compiled models."""
-    size = rotor.shape[1]
-    speed = shaft(t, schedule)[1]
-    vx, vy = float(state[size]), float(state[size + 1])
-    fx, fy = film_force(kind, state[0], state[1], vx, vy, speed, numbers, table)
-    return motion_rates(
-        t, state, fx, fy, rotor, unbalance, schedule, shapes, times, controller, reference
-    )

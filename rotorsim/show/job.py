@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..orbit import Orbit, speed_cascade
+from ..orbit import Orbit
+from ..orbit.analysis import speed_cascade
 from ..orbit.description import describe_orbit, run_names, run_title, whirl_range_text
 from ..rows import QUANTITIES, RPM
 from ..study.film_motion import film_at_rest

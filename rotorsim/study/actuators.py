@@ -65,7 +65,8 @@ def with_actuator(
         The speed changes, or as `design_feedback`.
     """
     from ..machine.actuator import ActuatedForce
-    from ..orbit import LinearForce, find_equilibrium, linearize_force
+    from ..orbit import LinearForce
+    from ..orbit.forces import find_equilibrium, linearize_force
 
     if not problem.schedule.is_constant:
         raise InputError("needs one speed, not a ramp", key="orbit.actuator")

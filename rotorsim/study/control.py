@@ -20,7 +20,9 @@ if TYPE_CHECKING:
     import control
 
     from ..machine.control import LoopMargins, StateFeedback
-    from ..orbit import BearingForce, LoadedFilm, Orbit
+    from ..orbit import Orbit
+    from ..orbit.film_force import LoadedFilm
+    from ..orbit.forces import BearingForce
 
 Array = NDArray[np.float64]
 
@@ -137,8 +139,8 @@ def study_control(
     """
     from ..machine.control import loop_margins
     from ..machine.statespace import state_space
-    from ..orbit import find_equilibrium, linearize_force, loaded_film
-    from ..orbit.forces import CompilableForce
+    from ..orbit.film_force import loaded_film
+    from ..orbit.forces import CompilableForce, find_equilibrium, linearize_force
 
     wishes = wishes or ControlWishes()
     film = loaded_film(case, speed)

@@ -109,7 +109,7 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
     Pressure is solved for the journal's position and velocity; the temperature is that of the
     operating point, as in the simulation. Moments at which no film is found are left out.
     """
-    from ..orbit import SolvedFilmForce, operating_film
+    from ..orbit.film_force import SolvedFilmForce, operating_film
 
     case = _shown_case(
         scenario.case(orbit_settings(scenario)[0].radial_clearance, orbit.thermal_model)

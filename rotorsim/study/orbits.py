@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model import Bearing
     from ..model.orbit import OrbitSettings
-    from ..orbit import LinearForce, LoadedFilm, Orbit, OrbitProblem, SpeedSchedule
+    from ..orbit import LinearForce, Orbit, OrbitProblem, SpeedSchedule
+    from ..orbit.film_force import LoadedFilm
     from ..rotor import Rotor
 
 _UNPLACED = (
@@ -100,7 +101,7 @@ def prepare_film(
     progress : callable, optional
         Called with rows done and rows in all, where there is something to do.
     """
-    from ..orbit import prepare_map
+    from ..orbit.film_force import prepare_map
 
     settings, _ = orbit_settings(scenario)
     if settings.force is OrbitForce.FILM:
@@ -189,7 +190,7 @@ def _nonlinear_film(scenario: Scenario, model: str, speed: float) -> LoadedFilm:
 
     With an eccentricity ratio in place of a load, the load is that which gives it at this speed.
     """
-    from ..orbit import loaded_film
+    from ..orbit.film_force import loaded_film
 
     case = scenario.case(orbit_settings(scenario)[0].radial_clearance, model)
     try:

@@ -30,8 +30,8 @@ mass = "450 kg"
 @pytest.fixture
 def here(here: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> CommandLine:
     """Call the command line beside small.toml, with a film in closed form."""
-    from rotorsim import orbit
-    from rotorsim.orbit import LoadedFilm, ShortBearingForce
+    from rotorsim.orbit import ShortBearingForce, film_force
+    from rotorsim.orbit.film_force import LoadedFilm
 
     def short(case, speed):
         del speed
@@ -39,7 +39,7 @@ def here(here: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
         return LoadedFilm(force, 3000.0, case.bearing, "short bearing")
 
     # The finite film is solved or mapped for half a minute; the closed form will do here.
-    monkeypatch.setattr(orbit, "loaded_film", short)
+    monkeypatch.setattr(film_force, "loaded_film", short)
     (tmp_path / "small.toml").write_text(SCENARIO, encoding="utf-8")
     return here
 

@@ -9,17 +9,11 @@ from film_cases import elliptical_arcs, split_grooves
 from rotorsim.errors import InputError
 from rotorsim.film.geometry import bore_offset
 from rotorsim.model import Bearing, Cavitation
-from rotorsim.orbit import (
-    ForceMap,
-    OrbitProblem,
-    ShortBearingForce,
-    SpeedSchedule,
-    film_map,
-    minimum_film,
-    simulate,
-)
+from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, film_map, simulate
+from rotorsim.orbit.clearance import minimum_film
 from rotorsim.orbit.film_map import SqueezeFilm, cache_folder, film_force_map, map_path, read_map
-from rotorsim.orbit.short_bearing import short_bearing_impedance
+from rotorsim.orbit.force_map import ForceMap
+from rotorsim.orbit.kernels import short_bearing_impedance
 from rotorsim.rotor import Rotor
 
 

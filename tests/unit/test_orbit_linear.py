@@ -6,38 +6,30 @@ import dataclasses
 
 import numpy as np
 import pytest
+from linear_orbits import constant_coefficients, simulate_linear
 
 from rotorsim.errors import InputError
 from rotorsim.model import Arc, Bearing
+from rotorsim.model.loads import BaseMotion, BaseShock, HarmonicForce, StepForce
 from rotorsim.orbit import (
-    BaseMotion,
-    BaseShock,
     CallableForce,
-    Controller,
-    HarmonicForce,
     LinearForce,
-    Method,
     OrbitProblem,
-    OrbitStatus,
     SpeedSchedule,
-    StepForce,
     cascade,
-    concatenate,
-    constant_coefficients,
-    contact_boundary,
-    fit_modes,
-    growth_rate,
-    minimum_film,
     orbit_ellipse,
     poincare_points,
-    recognise,
     simulate,
-    simulate_linear,
-    simulate_pieces,
     spectrum,
     steady_part,
-    whirl_frequency_ratio,
 )
+from rotorsim.orbit.analysis import recognise
+from rotorsim.orbit.clearance import contact_boundary, minimum_film
+from rotorsim.orbit.integrate import simulate_pieces
+from rotorsim.orbit.modes import fit_modes, growth_rate
+from rotorsim.orbit.orbit import OrbitStatus, concatenate
+from rotorsim.orbit.problem import Controller, Method
+from rotorsim.orbit.spectrum import whirl_frequency_ratio
 from rotorsim.rotor import Rotor
 
 CLEARANCE = 1e-4
@@ -75,7 +67,7 @@ def test_schedule_angle_is_the_integral_of_its_speed():
         lambda: problem(minimum_film=CLEARANCE),
         lambda: problem(samples_per_revolution=2),
         lambda: problem(relative_tolerance=1.0),
-        lambda: constant_coefficients(np.eye(3), np.eye(2)),
+        lambda: LinearForce(constant_coefficients(np.eye(3), np.eye(2)), 1e-4).at(1.0),
         lambda: simulate(problem(initial_displacement=(2e-4, 0.0))),
         lambda: simulate(problem(loads=(StepForce((1.0, 0.0), node=1),))),
         lambda: simulate(problem(initial_state=np.zeros(3))),
@@ -350,7 +342,7 @@ def test_poincare_points_are_one_a_turn_at_one_shaft_angle():
 
 def test_reported_loads_are_what_the_rotor_feels():
     """Loads along an orbit against the acceleration that they give a free rotor."""
-    from rotorsim.orbit.loads import load_on_rotor
+    from rotorsim.orbit.equations import load_on_rotor
 
     rotor = Rotor.jeffcott(50.0, 1e7, 5.0)
     loads = (

@@ -15,18 +15,12 @@ from rotorsim.machine.matrices import state_matrix
 from rotorsim.model import Cavitation, Inception
 from rotorsim.model.loads import BaseMotion, BaseShock, HarmonicForce, StepForce
 from rotorsim.model.orbit import ActuatorSettings, Design, OrbitKind
-from rotorsim.orbit import (
-    FilmMapForce,
-    OrbitStatus,
-    SolvedFilmForce,
-    SpeedSchedule,
-    analyse,
-    can_be_mapped,
-    concatenate,
-    orbit_ellipse,
-    simulate_pieces,
-)
+from rotorsim.orbit import SpeedSchedule, analyse, orbit_ellipse
 from rotorsim.orbit.description import describe_orbit
+from rotorsim.orbit.film_force import SolvedFilmForce, can_be_mapped
+from rotorsim.orbit.force_map import FilmMapForce
+from rotorsim.orbit.integrate import simulate_pieces
+from rotorsim.orbit.orbit import OrbitStatus, concatenate
 from rotorsim.rotor import Rotor
 from rotorsim.study.orbits import orbit_problem, simulate_orbit
 from rotorsim.study.sweep import tabulate
@@ -226,7 +220,7 @@ def test_oil_whip_locks_to_the_natural_frequency():
     assert 1.8 * 400.0 < found.first_speed < 3.2 * 400.0
     assert found.last_speed > 4.0 * 400.0
     end = orbit.part(-40 * 64)
-    from rotorsim.orbit import whirl_frequency_ratio
+    from rotorsim.orbit.spectrum import whirl_frequency_ratio
 
     ratio = whirl_frequency_ratio(end)
     assert ratio is not None

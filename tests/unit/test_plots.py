@@ -11,7 +11,7 @@ from sample_results import campbell_of, chart_of, orbit_of, point_of
 
 from rotorsim.bearing.table import CoefficientTable
 from rotorsim.machine.uncertainty import Propagation
-from rotorsim.orbit import speed_cascade
+from rotorsim.orbit.analysis import speed_cascade
 from rotorsim.rotor import Rotor
 from rotorsim.show import figures as plots
 from rotorsim.show.figures.style import MODEL_STYLES

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from linear_orbits import constant_coefficients
 
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import modes
 from rotorsim.machine.response import unbalance_response
 from rotorsim.machine.support import ConstantSupport
-from rotorsim.orbit import LinearForce, OrbitProblem, SpeedSchedule, fit_modes, simulate
-from rotorsim.orbit.forces import constant_coefficients
+from rotorsim.orbit import LinearForce, OrbitProblem, SpeedSchedule, simulate
+from rotorsim.orbit.modes import fit_modes
 from rotorsim.rotor import Rotor
 
 K = np.array([[2.2e8, 1.6e8], [-0.9e8, 3.0e8]])

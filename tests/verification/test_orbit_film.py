@@ -14,24 +14,20 @@ from rotorsim.film.layers import isoviscous_layers
 from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
 from rotorsim.model import LoadTarget
+from rotorsim.model.loads import StepForce
 from rotorsim.orbit import (
     CallableForce,
-    LoadedFilm,
     OrbitProblem,
-    OrbitStatus,
-    SolvedFilmForce,
     SpeedSchedule,
-    StepForce,
     analyse,
-    can_be_mapped,
     film_map,
-    find_equilibrium,
-    growth_rate,
-    linearize_force,
-    loaded_film,
     simulate,
     steady_part,
 )
+from rotorsim.orbit.film_force import LoadedFilm, SolvedFilmForce, can_be_mapped, loaded_film
+from rotorsim.orbit.forces import find_equilibrium, linearize_force
+from rotorsim.orbit.modes import growth_rate
+from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.rotor import Rotor
 
 RADIUS, CLEARANCE, VISCOSITY, RATIO = 0.025, 50e-6, 0.02, 0.5

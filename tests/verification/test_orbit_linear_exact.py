@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from linear_orbits import constant_coefficients, simulate_linear
 from scipy.integrate import quad
 from scipy.linalg import expm
 
 from rotorsim.orbit import (
     LinearForce,
-    Method,
     OrbitProblem,
-    OrbitStatus,
     SpeedSchedule,
-    constant_coefficients,
-    growth_rate,
     orbit_ellipse,
     simulate,
-    simulate_linear,
 )
+from rotorsim.orbit.modes import growth_rate
+from rotorsim.orbit.orbit import OrbitStatus
+from rotorsim.orbit.problem import Method
 from rotorsim.rotor import Rotor
 
 CLEARANCE = 1e-4

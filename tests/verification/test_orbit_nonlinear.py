@@ -13,23 +13,21 @@ from scipy.sparse.linalg import splu
 from rotorsim.errors import InputError
 from rotorsim.orbit import (
     CallableForce,
-    FilmMapForce,
-    ForceMap,
     Orbit,
     OrbitProblem,
-    OrbitStatus,
     ShortBearingForce,
     SpeedSchedule,
     cascade,
-    find_equilibrium,
-    growth_rate,
-    linearize_force,
-    recognise,
     simulate,
     steady_part,
-    whirl_frequency_ratio,
 )
-from rotorsim.orbit.short_bearing import short_bearing_impedance
+from rotorsim.orbit.analysis import recognise
+from rotorsim.orbit.force_map import FilmMapForce, ForceMap
+from rotorsim.orbit.forces import find_equilibrium, linearize_force
+from rotorsim.orbit.kernels import short_bearing_impedance
+from rotorsim.orbit.modes import growth_rate
+from rotorsim.orbit.orbit import OrbitStatus
+from rotorsim.orbit.spectrum import whirl_frequency_ratio
 from rotorsim.rotor import Rotor
 
 CLEARANCE, SPEED = 1e-4, 1000.0

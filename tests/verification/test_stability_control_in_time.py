@@ -8,16 +8,10 @@ from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.machine.actuator import ActuatedForce
 from rotorsim.machine.control import StateFeedback, design_lqr, design_pd, loop_margins
 from rotorsim.machine.statespace import state_space
-from rotorsim.orbit import (
-    OrbitProblem,
-    OrbitStatus,
-    ShortBearingForce,
-    SpeedSchedule,
-    find_equilibrium,
-    growth_rate,
-    linearize_force,
-    simulate,
-)
+from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, simulate
+from rotorsim.orbit.forces import find_equilibrium, linearize_force
+from rotorsim.orbit.modes import growth_rate
+from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.rotor import Rotor
 
 FILM = ShortBearingForce(viscosity=0.0277, length=0.04, radius=0.05, radial_clearance=1e-4)

@@ -10,8 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ...orbit import Cascade, Orbit, once_per_turn, recognise, steady_spectrum
+from ...orbit import Orbit
+from ...orbit.analysis import once_per_turn, recognise, steady_spectrum
 from ...orbit.description import run_names, run_title
+from ...orbit.spectrum import Cascade
 from ...rows import QUANTITIES
 from ...text import caption
 from .style import (

@@ -122,7 +122,7 @@ def spectrum_chart(runs: Sequence[Run]) -> Chart | None:
 
 def cascade_charts(runs: Sequence[Run]) -> list[Chart]:
     """Chart of the cascade of each run through the speeds that is long enough."""
-    from ...orbit import speed_cascade
+    from ...orbit.analysis import speed_cascade
     from ..figures import spectrum_cascade
 
     found = [(run, speed_cascade(run.orbit)) for run in runs]

@@ -12,7 +12,8 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from ...errors import InputError
-from ...orbit import Orbit, concatenate
+from ...orbit import Orbit
+from ...orbit.orbit import concatenate
 from ..viewer import has_display, viewer_program
 from . import series_view
 from .orbit_view import log_orbit_piece, log_surroundings, orbit_view

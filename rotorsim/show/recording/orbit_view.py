@@ -12,7 +12,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import ArrayLike, NDArray
 
-from ...orbit import once_per_turn
+from ...orbit.analysis import once_per_turn
 from .colours import ALARM, FAINT, LINE, TEXT, model_colour
 from .runs import REVOLUTIONS, SAMPLE_LIMIT, TIME, Run, log_labels, send_run, thin
 

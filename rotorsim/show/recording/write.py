@@ -8,7 +8,7 @@ import rerun as rr
 
 from ...atomic import replacing
 from ...errors import InputError
-from ...orbit import once_per_turn
+from ...orbit.analysis import once_per_turn
 from ...text import markdown
 from .charts import send_eigenvalues, send_operating_point
 from .contents import RecordingContents

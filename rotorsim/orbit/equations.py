@@ -1,0 +1,306 @@
+"""Equations of motion of a rotor on its film: from a problem to the state's rates.
+
+One compiled function for all, so that SciPy calls compiled code once per evaluation; numbers travel
+in plain arrays, packed here and by `rotorsim.orbit.forces`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..compiled import compiled
+from ..errors import InputError
+from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
+from ..rotor import Rotor
+from .forces import CompilableForce, CompiledForce
+from .kernels import film_force, film_force_series
+from .problem import OrbitProblem
+
+Array = NDArray[np.float64]
+Rates = Callable[[float, Array], Array]
+FilmSeries = Callable[[Array], Array]
+
+_CONSTANT, _HARMONIC, _HALF_SINE = 0.0, 1.0, 2.0
+"""Time functions that the compiled equations know."""
+
+
+def _static_load(problem: OrbitProblem) -> Array:
+    """Share the static load out over the nodes as their masses, (n,)."""
+    rotor = problem.rotor
+    return rotor.mass @ rotor.translation(problem.static_load) / rotor.total_mass
+
+
+def initial_state(problem: OrbitProblem, equilibrium: tuple[float, float]) -> Array:
+    """Start of the run: nodes other than the journal hang where journal and load put them."""
+    rotor, extra = problem.rotor, 0
+    if problem.controller is not None:
+        extra = problem.controller.a.shape[0]
+    size = rotor.mass.shape[0]
+    if problem.initial_state is not None:
+        state = np.array(problem.initial_state, dtype=float)
+        if state.shape != (2 * size + extra,):
+            raise InputError(
+                f"must have {2 * size + extra} entries",
+                key="orbit.initial_state",
+                value=state.shape,
+            )
+        return state
+    state = np.zeros(2 * size + extra)
+    state[:2] = np.asarray(equilibrium) + problem.initial_displacement
+    state[size : size + 2] = problem.initial_velocity
+    if size > 2:
+        free = rotor.stiffness[2:, 2:]
+        pull = _static_load(problem)[2:] - rotor.stiffness[2:, :2] @ state[:2]
+        state[2:size] = np.linalg.lstsq(free, pull, rcond=None)[0]
+    return state
+
+
+def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries]:
+    """State rates, and the film force along (n, 5) motion."""
+    rotor, controller = problem.rotor, problem.controller
+    shapes, times = pack_loads(problem.loads, rotor)
+    if any(problem.static_load):
+        still, always = pack_loads([StepForce((0.0, 0.0))], rotor)
+        still[0, 0], always[0, 1] = _static_load(problem), -math.inf
+        shapes, times = np.concatenate([still, shapes]), np.concatenate([always, times])
+    if controller is None:
+        blocks: Array = np.zeros((0, 0))
+        reference: Array = np.zeros(2)
+    else:
+        rows = [[controller.a, controller.b], [controller.c, controller.d]]
+        blocks = np.asarray(np.block(rows), dtype=float)
+        reference = np.asarray(controller.reference, dtype=float)
+    inverse = np.linalg.inv(rotor.mass)
+    matrices = [
+        inverse, rotor.damping, rotor.stiffness, rotor.gyroscopic, rotor.circulatory,
+    ]  # fmt: skip
+    planes = [np.abs(rotor.unbalance), np.angle(rotor.unbalance), rotor.first_unknown]
+    structure: tuple[Array, ...] = (
+        np.asarray(np.stack(matrices), dtype=float),
+        np.asarray(np.column_stack(planes), dtype=float),
+        problem.schedule.knots,
+        shapes,
+        times,
+        blocks,
+        reference,
+    )
+    force = problem.force
+    if isinstance(force, CompilableForce):
+        speeds = problem.schedule.speeds
+        return _compiled_rates(force.compiled(min(speeds), max(speeds)), structure)
+    size, schedule = rotor.mass.shape[0], problem.schedule.knots
+
+    def rates(t: float, s: Array) -> Array:
+        speed = _shaft(t, schedule)[1]
+        vx, vy = float(s[size]), float(s[size + 1])
+        fx, fy = force.force(float(s[0]), float(s[1]), vx, vy, speed)
+        return _motion_rates(t, s, fx, fy, *structure)
+
+    def film(motion: Array) -> Array:
+        return np.array([force.force(*row) for row in motion]).reshape(-1, 2)
+
+    return rates, film
+
+
+def _compiled_rates(form: CompiledForce, structure: tuple[Array, ...]) -> tuple[Rates, FilmSeries]:
+    kind, numbers, table = form.kind, form.numbers, form.table
+
+    def rates(t: float, s: Array) -> Array:
+        return _compiled_state_rates(t, s, kind, numbers, table, *structure)
+
+    def film(motion: Array) -> Array:
+        return film_force_series(kind, motion, numbers, table)
+
+    return rates, film
+
+
+def pack_loads(loads: Sequence[Load], rotor: Rotor) -> tuple[Array, Array]:
+    """Pack loads into arrays for the compiled right-hand side.
+
+    Returns
+    -------
+    shapes : (k, 2, 2n) array
+        Amplitudes of the cosine and sine parts on every degree of freedom [N].
+    numbers : (k, 4) array
+        Kind, start, stop [s], frequency [rad/s].
+    """
+    size = rotor.mass.shape[0]
+    shapes, numbers = np.zeros((len(loads), 2, size)), np.zeros((len(loads), 4))
+    for shape, number, load in zip(shapes, numbers, loads, strict=True):
+        match load:
+            case StepForce():
+                shape[0, _plane(load.node, rotor)] = load.force
+                number[:] = _CONSTANT, load.start, load.stop, 0.0
+            case HarmonicForce():
+                shape[:, _plane(load.node, rotor)] = _cosine_and_sine(load.force, load.phase)
+                number[:] = _HARMONIC, load.start, load.stop, load.frequency
+            case BaseMotion():
+                base = _cosine_and_sine(load.displacement, load.phase) * load.frequency**2
+                shape[:] = [rotor.mass @ rotor.translation(part) for part in base]
+                number[:] = _HARMONIC, load.start, load.stop, load.frequency
+            case BaseShock():
+                shape[0] = -rotor.mass @ rotor.translation(load.acceleration)
+                stop = load.start + load.duration
+                number[:] = _HALF_SINE, load.start, stop, math.pi / load.duration
+    return shapes, numbers
+
+
+def load_on_rotor(loads: Sequence[Load], rotor: Rotor, t: Array) -> Array:
+    """Sum of the loads over all nodes (n, 2) [N] at times t (n,)."""
+    shapes, numbers = pack_loads(loads, rotor)
+    every = _load_series(np.asarray(t, dtype=float), shapes, numbers)
+    return np.stack([every[:, rotor.first_unknown + axis].sum(axis=1) for axis in (0, 1)], axis=1)
+
+
+def _plane(node: int, rotor: Rotor) -> slice:
+    """Place of a node's x and y."""
+    if not 0 <= node < len(rotor.nodes):
+        raise InputError(
+            f"must be from 0 to {len(rotor.nodes) - 1}", key="orbit.load.node", value=node
+        )
+    first = int(rotor.first_unknown[node])
+    return slice(first, first + 2)
+
+
+def _cosine_and_sine(amplitude: tuple[float, float], phase: tuple[float, float]) -> Array:
+    a, p = np.asarray(amplitude), np.asarray(phase)
+    return np.stack([a * np.cos(p), -a * np.sin(p)])
+
+
+@compiled()
+def _shaft(t: float, schedule: Array) -> tuple[float, float, float]:
+    """Angle, speed and acceleration of the shaft; rows: time, speed, angle, acceleration."""
+    i = schedule.shape[0] - 2
+    while i > 0 and t < schedule[i, 0]:
+        i -= 1
+    since = t - schedule[i, 0]
+    a = schedule[i, 3]
+    w = schedule[i, 1]
+    return schedule[i, 2] + since * (w + 0.5 * a * since), w + a * since, a
+
+
+@compiled()
+def _add_loads(t: float, force: Array, shapes: Array, times: Array) -> None:
+    for k in range(times.shape[0]):
+        if times[k, 1] <= t < times[k, 2]:
+            if times[k, 0] == _CONSTANT:
+                c, s = 1.0, 0.0
+            elif times[k, 0] == _HARMONIC:
+                c, s = math.cos(times[k, 3] * t), math.sin(times[k, 3] * t)
+            else:
+                c, s = math.sin(times[k, 3] * (t - times[k, 1])), 0.0
+            for i in range(force.size):
+                force[i] += shapes[k, 0, i] * c + shapes[k, 1, i] * s
+
+
+@compiled()
+def _load_series(t: Array, shapes: Array, times: Array) -> Array:
+    """Loads on every degree of freedom (n, 2k) [N] at times t (n,); see `pack_loads`."""
+    out = np.zeros((t.size, shapes.shape[2]))
+    for i in range(t.size):
+        _add_loads(t[i], out[i], shapes, times)
+    return out
+
+
+@compiled()
+def _motion_rates(
+    t: float,
+    state: Array,
+    fx: float,
+    fy: float,
+    rotor: Array,
+    unbalance: Array,
+    schedule: Array,
+    shapes: Array,
+    times: Array,
+    controller: Array,
+    reference: Array,
+) -> Array:
+    """State rates from a known film force on the journal.
+
+    state: displacements, velocities, controller states; rotor: inverse mass, damping, stiffness,
+    gyroscopic, circulatory matrix; unbalance: (n_nodes, 3) mass times radius, phase, place of x;
+    shapes, times: see
+    `pack_loads`; controller: blocks [[A, B], [C, D]].
+    """
+    size = rotor.shape[1]
+    rates = np.empty(state.size)
+    force = np.zeros(size)
+    phi, w, alpha = _shaft(t, schedule)
+    force[0], force[1] = fx, fy
+    for k in range(unbalance.shape[0]):
+        if unbalance[k, 0] != 0.0:
+            c, s = math.cos(phi + unbalance[k, 1]), math.sin(phi + unbalance[k, 1])
+            x = int(unbalance[k, 2])
+            force[x] += unbalance[k, 0] * (w * w * c + alpha * s)
+            force[x + 1] += unbalance[k, 0] * (w * w * s - alpha * c)
+    _add_loads(t, force, shapes, times)
+    extra = state.size - 2 * size
+    if controller.shape[0] > 0:
+        _add_control(state, force, rates, controller, reference, size, extra)
+    for i in range(size):
+        for j in range(size):
+            force[i] -= (rotor[1, i, j] + w * rotor[3, i, j]) * state[size + j]
+            force[i] -= (rotor[2, i, j] + w * rotor[4, i, j]) * state[j]
+    for i in range(size):
+        rates[i] = state[size + i]
+        total = 0.0
+        for j in range(size):
+            total += rotor[0, i, j] * force[j]
+        rates[size + i] = total
+    return rates
+
+
+@compiled()
+def _add_control(
+    state: Array,
+    force: Array,
+    rates: Array,
+    controller: Array,
+    reference: Array,
+    size: int,
+    extra: int,
+) -> None:
+    inputs = np.empty(extra + 4)
+    inputs[:extra] = state[2 * size :]
+    inputs[extra] = state[0] - reference[0]
+    inputs[extra + 1] = state[1] - reference[1]
+    inputs[extra + 2] = state[size]
+    inputs[extra + 3] = state[size + 1]
+    for i in range(extra + 2):
+        total = 0.0
+        for j in range(extra + 4):
+            total += controller[i, j] * inputs[j]
+        if i < extra:
+            rates[2 * size + i] = total
+        else:
+            force[i - extra] += total
+
+
+@compiled()
+def _compiled_state_rates(
+    t: float,
+    state: Array,
+    kind: int,
+    numbers: Array,
+    table: Array,
+    rotor: Array,
+    unbalance: Array,
+    schedule: Array,
+    shapes: Array,
+    times: Array,
+    controller: Array,
+    reference: Array,
+) -> Array:
+    """State rates with the film force of one of the compiled models."""
+    size = rotor.shape[1]
+    speed = _shaft(t, schedule)[1]
+    vx, vy = float(state[size]), float(state[size + 1])
+    fx, fy = film_force(kind, state[0], state[1], vx, vy, speed, numbers, table)
+    return _motion_rates(
+        t, state, fx, fy, rotor, unbalance, schedule, shapes, times, controller, reference
+    )
