@@ -17,6 +17,7 @@ from types import ModuleType
 import pytest
 
 import rotorsim
+from rotorsim.files.machine import MachineFile
 from rotorsim.files.scenario import Scenario
 from rotorsim.files.scenario.reader import makers_of, tables_of
 from rotorsim.model.entries import Entry, entries
@@ -176,6 +177,28 @@ def test_defaults_of_scenario_keys_are_those_of_the_program():
                 assert rows[name].strip() == _default(entry), name
                 checked += 1
     assert checked > 80
+
+
+def test_every_key_of_machine_files_is_listed_with_its_default():
+    page = (DOCS / "machine.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `([\w.]+)` \| ([^|]*) \|", page, re.M))
+    tables = tables_of(MachineFile)
+    keys = {".".join((*table, key)) for table in tables for key in tables[table]} | {"rotor.kind"}
+    for name in keys - set(rows):
+        assert tuple(name.split(".")) in tables, f"docs/machine.md does not list {name}"
+        assert f"`[{name}]`" in page, name
+    assert set(rows) <= keys
+    checked = 0
+    for path, makers in makers_of(MachineFile).items():
+        for key, entry in (item for maker in makers for item in entries(maker).items()):
+            name = ".".join((*path, key))
+            if name in rows and name != "support.pedestal.damping":  # zeros
+                text = (
+                    f"`{entry.default}`" if entry.default and isinstance(entry.default, str) else ""
+                )
+                assert rows[name].strip() == (text or _default(entry)), name
+                checked += 1
+    assert checked > 60
 
 
 def test_public_names_are_in_the_reference():

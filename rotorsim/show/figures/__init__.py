@@ -6,6 +6,15 @@ PNG and SVG.
 
 from .animation import animate_orbits, can_write_mp4
 from .bearing import coefficients_over_speed, film_maps, film_profiles, thresholds_over_speed
+from .machine import (
+    bode_at_probes,
+    critical_speed_chart,
+    growth_over_speed,
+    machine_campbell,
+    mode_shape,
+    mode_shapes,
+    rotor_drawing,
+)
 from .map import stability_map
 from .orbits import bode_plot, orbit_plot, spectrum_cascade, spectrum_plot
 from .stability import campbell_diagram, eigenvalue_plot, root_locus, tolerance_histograms
@@ -13,16 +22,23 @@ from .style import figure_bytes, save_figure
 
 __all__ = [
     "animate_orbits",
+    "bode_at_probes",
     "bode_plot",
     "campbell_diagram",
     "can_write_mp4",
     "coefficients_over_speed",
+    "critical_speed_chart",
     "eigenvalue_plot",
     "figure_bytes",
     "film_maps",
     "film_profiles",
+    "growth_over_speed",
+    "machine_campbell",
+    "mode_shape",
+    "mode_shapes",
     "orbit_plot",
     "root_locus",
+    "rotor_drawing",
     "save_figure",
     "spectrum_cascade",
     "spectrum_plot",

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
+from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
 from ...files.machine import MachineFile
@@ -83,6 +84,7 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
             "", (x, radius), (x, radius + 3.5 * size), zorder=5, annotation_clip=False,
             arrowprops={"arrowstyle": "-|>", "color": "#0072B2", "lw": 1.2},
         )  # fmt: skip
+        ax.update_datalim([(x, radius + 5.0 * size)])
         named = [one.name for one in machine.probe if one.at == at and one.name]
         _label(ax, x, radius + 3.7 * size, "\n".join(named), "#0072B2", "bottom")
     for entry in machine.rotor.unbalance:
@@ -131,7 +133,7 @@ def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
             ax.add_patch(
                 Rectangle(box, width * _MILLI, height, fc=_DISC, ec="0.2", lw=0.8, zorder=2)
             )
-        ax.update_datalim([(x, -outer * _MILLI), (x, outer * _MILLI)])
+        ax.update_datalim([(x, -1.15 * outer * _MILLI), (x, outer * _MILLI)])
         _label(ax, x, -1.03 * outer * _MILLI, disc.name, "0.2", "top")
     else:
         ax.plot(x, 0.0, "s", color=_DISC, mec="0.2", ms=8, ls="", zorder=6)
@@ -300,7 +302,7 @@ def mode_shape(
     decrement = found.logarithmic_decrement[index, branch]
     text = f"{frequency:.0f} cpm, {whirl}, decrement {decrement:.3f}"
     ax.set_title(caption(title) or text, fontsize=8.5)
-    ax.set_box_aspect((2.6, 1.0, 1.0), zoom=1.0)
+    ax.set_box_aspect((2.6, 1.0, 1.0), zoom=1.1)
     ax.set(xlim=(z.min(), z.max()), ylim=(-1, 1), zlim=(-1, 1))
     ax.set_yticks([])
     ax.set_zticks([])
@@ -345,7 +347,8 @@ def bode_at_probes(
     upper.set(ylabel="amplitude, zero to peak [µm]", title=caption(title))
     upper.set_ylim(bottom=0.0)
     lower.set(xlabel="shaft speed [rpm]", ylabel="phase lag [deg]")
-    lower.yaxis.set_major_locator(mpl.ticker.MultipleLocator(90.0))  # type: ignore[attr-defined]
+    step = 30.0 if np.ptp(lower.get_ylim()) < 240.0 else 90.0
+    lower.yaxis.set_major_locator(MultipleLocator(step))
     upper.legend(loc="best")
     return figure_of(upper)
 
