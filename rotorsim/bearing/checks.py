@@ -16,9 +16,9 @@ TURBULENT_REYNOLDS = 1000.0
 """rho U c/mu above which a bearing film is expected to be turbulent (Constantinescu)."""
 CRITICAL_TAYLOR = 41.2
 """Re sqrt(c/R) at which Taylor vortices set in between concentric cylinders (Taylor 1923)."""
-MOST_TO_HELD_WALLS = 0.5
+_MOST_TO_HELD_WALLS = 0.5
 """Part of the friction's heat from which on walls held at ambient temperature decide the film."""
-NOTICEABLE_HEATING = 10.0
+_NOTICEABLE_HEATING = 10.0
 """Of the hottest oil over the supply [K]; below it, where the heat goes matters little."""
 
 
@@ -233,14 +233,14 @@ def _held_walls(case: Case, max_temperature: float | None, heat: HeatBalance | N
     """Walls that stay cold whatever they take, and take most of the heat."""
     if heat is None or max_temperature is None or not heat.dissipation > 0.0:
         return []
-    if not max_temperature - case.thermal.supply_temperature > NOTICEABLE_HEATING:
+    if not max_temperature - case.thermal.supply_temperature > _NOTICEABLE_HEATING:
         return []
     held = {
         "bush": heat.to_bush if case.thermal.bush is BushModel.AMBIENT else 0.0,
         "shaft": heat.to_shaft if case.thermal.shaft is ShaftModel.AMBIENT else 0.0,
     }
     part = sum(held.values()) / heat.dissipation
-    if not part > MOST_TO_HELD_WALLS:
+    if not part > _MOST_TO_HELD_WALLS:
         return []
     walls = " and ".join(name for name, power in held.items() if power > 0.0)
     ambient = f"{case.thermal.ambient_temperature - ZERO_CELSIUS:.0f} °C"

@@ -88,8 +88,8 @@ _LONGEST_NAME = 100
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """How a cell begins that a spreadsheet program would evaluate."""
 
-Row = dict[str, float | str]
-Line = tuple[int, list[str]]
+_Row = dict[str, float | str]
+_Line = tuple[int, list[str]]
 """Number of a line in the file, and its cells."""
 
 
@@ -148,7 +148,7 @@ def _text(source: Path) -> str:
         ) from None
 
 
-def _lines(text: str, source: Path) -> tuple[list[Line], str]:
+def _lines(text: str, source: Path) -> tuple[list[_Line], str]:
     """Lines that hold something and are no comments, and what separates their cells."""
     lines = text.splitlines()
     stated = re.match(r"sep=([,;|\t])$", lines[0].strip(" \"'")) if lines else None
@@ -180,7 +180,7 @@ def _is_header(cells: Sequence[str]) -> bool:
     return {"kxx", "cxx"} <= {_named(cell)[0] for cell in cells}
 
 
-def _from_header(lines: list[Line]) -> list[Line]:
+def _from_header(lines: list[_Line]) -> list[_Line]:
     """Without the title lines that sheets begin with."""
     for place, (_, cells) in enumerate(lines[:_TITLE_LINES]):
         if _is_header(cells):
@@ -198,7 +198,7 @@ def _named(cell: str) -> tuple[str, str]:
     return _OTHER_NAMES.get(name, name), unit
 
 
-def _units_row(lines: list[Line]) -> tuple[list[str] | None, list[Line]]:
+def _units_row(lines: list[_Line]) -> tuple[list[str] | None, list[_Line]]:
     """Cells of the row of units, where there is one, and the rows below."""
     if len(lines) < 2:
         return None, []
@@ -213,7 +213,7 @@ def _units_row(lines: list[Line]) -> tuple[list[str] | None, list[Line]]:
 
 
 def _columns(
-    header: list[str], units: list[str] | None, rows: list[Line], source: Path
+    header: list[str], units: list[str] | None, rows: list[_Line], source: Path
 ) -> tuple[list[_Column], list[str]]:
     """Columns that count, and the names of those that are left out."""
     columns: list[_Column] = []
@@ -265,7 +265,7 @@ def _factor(name: str, unit: str, cell: str, source: Path) -> float:
         ) from None  # fmt: skip
 
 
-def _decimal_comma(rows: list[Line], columns: list[_Column], source: Path) -> bool:
+def _decimal_comma(rows: list[_Line], columns: list[_Column], source: Path) -> bool:
     """Whether decimals are written with a comma, in a file whose columns something else separates.
 
     Raises
@@ -300,7 +300,7 @@ def _decimal_comma(rows: list[Line], columns: list[_Column], source: Path) -> bo
 
 def _row(
     cells: list[str], columns: list[_Column], width: int, comma: bool, number: int, source: Path
-) -> Row:
+) -> _Row:
     """Values of a line [SI]; `width` is the number of cells in the header."""
     needed = max(column.place for column in columns) + 1
     more = any(cells[width:])
@@ -311,7 +311,7 @@ def _row(
             source=source,
             key=f"row {number}",
         )
-    row: Row = {"thermal_model": "given", "status": str(SolveStatus.CONVERGED)}
+    row: _Row = {"thermal_model": "given", "status": str(SolveStatus.CONVERGED)}
     for column in columns:
         if column.name in _TEXT:
             row[column.name] = _plain_text(cells[column.place])
@@ -346,7 +346,7 @@ def _value(text: str, cell: str, key: str, source: Path) -> float:
     raise TableError(f"not a number{comma}", source=source, key=key, value=_shown(cell))
 
 
-def _checked(value: float, row: Row, name: str, cell: str, key: str, source: Path) -> float:
+def _checked(value: float, row: _Row, name: str, cell: str, key: str, source: Path) -> float:
     """Return a value [SI] that its column may hold."""
     unused = row["status"] != "converged" or row.get("speed") == 0.0
     excused = name not in ("speed", "radial_clearance") and unused
@@ -378,9 +378,9 @@ def _plain_text(cell: str) -> str:
     return cell[1:] if cell[:1] == "'" and cell[1:].startswith(_FORMULA) else cell
 
 
-def _arrange(rows: list[tuple[int, Row]], source: Path, notes: list[str]) -> xr.Dataset:
+def _arrange(rows: list[tuple[int, _Row]], source: Path, notes: list[str]) -> xr.Dataset:
     """Group rows by thermal model and clearance, check the speeds, build the dataset."""
-    groups: dict[tuple[str, float], list[tuple[int, Row]]] = {}
+    groups: dict[tuple[str, float], list[tuple[int, _Row]]] = {}
     constant = "speed" not in rows[0][1]
     for number, row in rows:
         # NaN would make every row a group of its own.
@@ -423,12 +423,12 @@ def _arrange(rows: list[tuple[int, Row]], source: Path, notes: list[str]) -> xr.
 
 
 def _ordered(
-    groups: dict[tuple[str, float], list[tuple[int, Row]]],
+    groups: dict[tuple[str, float], list[tuple[int, _Row]]],
     models: list[str],
     clearances: list[float],
     speeds: list[float],
     source: Path,
-) -> Iterator[Row]:
+) -> Iterator[_Row]:
     """Rows model by model and clearance by clearance, all with the same speeds."""
     for model in models:
         for clearance in clearances:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from .operating_point import OperatingPoint
     from .table import CoefficientTable
 
-POINT_ROWS = (
+_POINT_ROWS = (
     "eccentricity_ratio", "attitude_angle", "load", "sommerfeld_number", "min_film_thickness",
     "max_pressure", "max_temperature", "mean_temperature", "shaft_temperature",
     "outlet_temperature", "friction_force", "power_loss", "side_flow", "critical_mass",
@@ -83,7 +83,7 @@ def point_text(point: OperatingPoint, name: str, digits: int | None = None) -> s
 def point_rows(point: OperatingPoint) -> list[Row]:
     """What a point comes to, row by row: equilibrium, film, heat, rigid rotor, solver."""
     rows = []
-    for name in POINT_ROWS:
+    for name in _POINT_ROWS:
         digits = QUANTITIES[name].digits
         text = point_text(point, name, 4 if digits == 3 else digits)
         if text != "-" or name not in _THERMAL:

@@ -17,15 +17,15 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-PLAUSIBLE_WHIRL = (0.1, 2.0)
+_PLAUSIBLE_WHIRL = (0.1, 2.0)
 """Whirl frequency at the threshold over shaft speed; films of oil whirl at about one half."""
-PLAUSIBLE_MASS = (1e-2, 1e7)
+_PLAUSIBLE_MASS = (1e-2, 1e7)
 """Critical mass per bearing [kg]."""
-PLAUSIBLE_LOSS = (1e-2, 1e2)
+_PLAUSIBLE_LOSS = (1e-2, 1e2)
 """Damping times shaft speed over stiffness, as sums of the magnitudes of all entries."""
-PLAUSIBLE_STIFFNESS = (1e-2, 1e3)
+_PLAUSIBLE_STIFFNESS = (1e-2, 1e3)
 """Stiffness times clearance over load, largest entry."""
-NOTICEABLE = 0.1
+_NOTICEABLE = 0.1
 """Of cross stiffness over all stiffness; below it, its sign may be anything."""
 _CHECK = "check units and frame: "
 _HERE = "here K = -dF/dx and C = -dF/dv, F the film's force on the journal"
@@ -69,7 +69,7 @@ def _signs(stiffness: Array, damping: Array) -> list[str]:
 def _axes(stiffness: Array) -> list[str]:
     """Cross stiffness that drives the journal against the rotation at every speed."""
     drive = stiffness[:, 0, 1] - stiffness[:, 1, 0]
-    if not np.all(drive < -NOTICEABLE * np.linalg.norm(stiffness, axis=(1, 2))):
+    if not np.all(drive < -_NOTICEABLE * np.linalg.norm(stiffness, axis=(1, 2))):
         return []
     return [
         "kxy - kyx is below zero at every speed, so the film drives the journal against the "
@@ -82,18 +82,18 @@ def _units(stiffness: Array, damping: Array, speed: Array, table: CoefficientTab
     """Quantities that are far from those of any film of oil at every speed."""
     thresholds = rigid_thresholds(stiffness, damping, speed)
     found = [
-        ("whirl frequency ratio", thresholds.whirl_frequency_ratio, PLAUSIBLE_WHIRL),
-        ("critical mass per bearing [kg]", thresholds.critical_mass, PLAUSIBLE_MASS),
+        ("whirl frequency ratio", thresholds.whirl_frequency_ratio, _PLAUSIBLE_WHIRL),
+        ("critical mass per bearing [kg]", thresholds.critical_mass, _PLAUSIBLE_MASS),
     ]
     cross = np.abs(stiffness[:, 0, 1] - stiffness[:, 1, 0])
-    if np.all(cross > NOTICEABLE * np.linalg.norm(stiffness, axis=(1, 2))):
+    if np.all(cross > _NOTICEABLE * np.linalg.norm(stiffness, axis=(1, 2))):
         loss = speed * np.abs(damping).sum(axis=(1, 2)) / np.abs(stiffness).sum(axis=(1, 2))
-        found.append(("damping times speed over stiffness", loss, PLAUSIBLE_LOSS))
+        found.append(("damping times speed over stiffness", loss, _PLAUSIBLE_LOSS))
     clearance = table.dataset["radial_clearance"]
     if "load" in table.dataset and np.all(np.isfinite(clearance.values)):
         scale = (clearance / table.dataset["load"]).transpose(*table.dataset["kxx"].dims)
         values = scale.values[table.converged] * np.abs(stiffness).max(axis=(1, 2))
-        found.append(("stiffness times clearance over load", values, PLAUSIBLE_STIFFNESS))
+        found.append(("stiffness times clearance over load", values, _PLAUSIBLE_STIFFNESS))
     return [
         f"the {words} is {known.min():.3g} to {known.max():.3g}, nowhere within {low:g} to "
         f"{high:g} as with films of oil; units stand in the header, x is along the load, and y 90 "

@@ -37,11 +37,11 @@ from .whirl import WhirlThreshold, rigid_threshold, routh_coefficients
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-STANDARD_GRAVITY = 9.80665
+_STANDARD_GRAVITY = 9.80665
 """[m/s2]; turns a load into a mass where there is no threshold to compare with."""
-DEFAULT_RATIO = 0.5
+_DEFAULT_RATIO = 0.5
 """Whirl over shaft frequency at which coefficients are stated where there is no threshold."""
-NOTICEABLE = 0.01
+_NOTICEABLE = 0.01
 """Change of K + i nu C by stored oil, relative to it, from which on points warn."""
 _PAD_RATIOS = np.geomspace(0.02, 20.0, 181)
 """Among which the threshold's whirl frequency ratio is sought with pads."""
@@ -112,7 +112,7 @@ class FilmDynamics:
             return *self.coefficients(1.0), 1.0
         if self.stored_oil is None:
             return self.stiffness, self.damping, None
-        ratio = self._oil_threshold[1] or DEFAULT_RATIO
+        ratio = self._oil_threshold[1] or _DEFAULT_RATIO
         return *self.coefficients(ratio), ratio
 
     @cached_property
@@ -162,7 +162,7 @@ class FilmDynamics:
             scale = radial_clearance * self.speed**2 / load
             return WhirlThreshold(verdict, mass, whirl, ratio, mass * scale)
         crossings = self._crossings()
-        below = 0.5 * crossings[0][0] if crossings else load / STANDARD_GRAVITY
+        below = 0.5 * crossings[0][0] if crossings else load / _STANDARD_GRAVITY
         stable = bool(np.max(_pad_eigenvalues(self, below).real) < 0.0)
         if not crossings:
             verdict = Stability.ALWAYS_STABLE if stable else Stability.ALWAYS_UNSTABLE
@@ -236,7 +236,7 @@ def film_dynamics(
     stiffness, damping = stiffness[np.ix_(keep, keep)], damping[np.ix_(keep, keep)]
     stores = False
     if solution.problem.rupture.conserves_mass and np.isfinite(stiffness).all():
-        changed = np.abs(stored_oil(1j * DEFAULT_RATIO * speed)).max()
+        changed = np.abs(stored_oil(1j * _DEFAULT_RATIO * speed)).max()
         stores = bool(changed > _NOTHING * np.abs(stiffness).max())
     held = stiffness if following is None else following[np.ix_(keep, keep)]
     mass = None
@@ -273,7 +273,7 @@ def full_coefficients(
     """
     turn = np.asarray(np.kron(np.eye(2), turn), dtype=float) if rotations else turn
     dynamics = film_dynamics(solution, turn, rotations=rotations)
-    stiffness, damping = dynamics.all_coefficients(frequency_ratio or DEFAULT_RATIO)
+    stiffness, damping = dynamics.all_coefficients(frequency_ratio or _DEFAULT_RATIO)
     mass = np.zeros_like(stiffness) if dynamics.mass is None else dynamics.mass
     return FullCoefficients(dynamics.names, stiffness, damping, mass)
 
@@ -353,7 +353,7 @@ def stored_oil_warnings(
     with_oil = stiffness + 1j * ratio * dynamics.speed * damping
     without = replace(dynamics, stored_oil=None).reduced(1j * ratio * dynamics.speed)
     change = float(np.abs(with_oil - without).max() / np.abs(without).max())
-    if change < NOTICEABLE:
+    if change < _NOTICEABLE:
         return ()
     return (
         "K and C depend on the whirl frequency (oil stored in the ruptured film): they are those "

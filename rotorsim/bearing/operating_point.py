@@ -104,10 +104,10 @@ class FullCoefficients:
     def reduced(self, s: complex) -> NDArray[np.complex128]:
         """Force per displacement that the journal feels of a motion exp(s t), (2, 2) or (4, 4)."""
         law = self.stiffness + s * self.damping + s * s * self.mass
-        return condensed(law, 4 if ROTATION in self.names else 2)
+        return condensed(law, 4 if _ROTATION in self.names else 2)
 
 
-ROTATION = "theta_x"
+_ROTATION = "theta_x"
 """Name of the journal's rotation about x; it is there with its fellow or not at all."""
 
 

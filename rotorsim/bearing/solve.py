@@ -32,8 +32,8 @@ from .pads import pad_results, unloaded_warnings
 from .whirl import rigid_threshold
 
 Array = NDArray[np.float64]
-FOLLOWING = ViscosityResponse.FOLLOWING
-PRESSURE_LIMIT = 400e6
+_FOLLOWING = ViscosityResponse.FOLLOWING
+_PRESSURE_LIMIT = 400e6
 """[Pa]; a load that needs more than this is out of the model's range."""
 _WITH_NUMBERS = (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED, SolveStatus.OUT_OF_RANGE)
 
@@ -103,7 +103,7 @@ def operating_point(
     problem, state = solution.problem, solution.state
     status, message = solution.status, solution.message
     following = None
-    if solution.thermal is not None and case.film.viscosity_response is FOLLOWING:
+    if solution.thermal is not None and case.film.viscosity_response is _FOLLOWING:
         following, settled = following_stiffness(solution.thermal)
         if not settled and status is SolveStatus.CONVERGED:
             status, message = SolveStatus.NOT_CONVERGED, "a displaced film did not converge"
@@ -116,11 +116,11 @@ def operating_point(
         load = 0.0  # and not the residual
     clearance, radius = case.bearing.radial_clearance, case.bearing.journal_radius
     viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    flow = solved_flow(solution)
+    flow = _solved_flow(solution)
     fraction = flow.liquid_fraction
     friction = friction_force(state, fraction)
     hottest, mean = _temperatures(solution, fraction)
-    thinnest = min_film_thickness(solution)
+    thinnest = _min_film_thickness(solution)
     numbers: dict[str, float] = {
         "eccentricity_ratio": float(np.hypot(*center)) / clearance,
         "attitude_angle": math.atan2(center[1], center[0]),
@@ -200,18 +200,18 @@ def operating_point(
 
 def _within_pressure(max_pressure: float, case: Case) -> tuple[SolveStatus, str]:
     """Whether a rigid bearing and an oil of constant viscosity mean anything at this pressure."""
-    if max_pressure <= PRESSURE_LIMIT:
+    if max_pressure <= _PRESSURE_LIMIT:
         return SolveStatus.CONVERGED, ""
     advice = "reduce the eccentricity ratio, the speed or the viscosity"
     if isinstance(case.target, LoadTarget):
         advice = "reduce the load, or raise speed, viscosity or size"
     return SolveStatus.OUT_OF_RANGE, (
-        f"the film reaches {max_pressure / 1e6:.0f} MPa, above {PRESSURE_LIMIT / 1e6:.0f} MPa: "
+        f"the film reaches {max_pressure / 1e6:.0f} MPa, above {_PRESSURE_LIMIT / 1e6:.0f} MPa: "
         f"bearing and shaft would yield, and the oil thicken; {advice}"
     )
 
 
-def min_film_thickness(solution: FilmSolution) -> float:
+def _min_film_thickness(solution: FilmSolution) -> float:
     """Smallest film thickness [m], lands only."""
     bearing, state = solution.problem.bearing, solution.state
     if bearing.is_plain and bearing.is_symmetric:
@@ -228,7 +228,7 @@ def _ratio(above: float, below: float) -> float:
     return above / below if below > 0.0 else math.inf
 
 
-def solved_flow(solution: FilmSolution) -> FilmFlow:
+def _solved_flow(solution: FilmSolution) -> FilmFlow:
     """Return the fluxes and liquid fractions of a solved film."""
     if solution.thermal is not None:
         return solution.thermal.energy.flow

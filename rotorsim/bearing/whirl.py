@@ -55,7 +55,7 @@ class WhirlThresholds:
 
 
 @dataclass(frozen=True)
-class RouthCoefficients:
+class _RouthCoefficients:
     """What Routh and Hurwitz ask of m s^2 + C s + K, for any mass.
 
     Stable if and only if `trace_damping`, `cross` and `det_stiffness` are all above zero and
@@ -91,7 +91,7 @@ class RouthCoefficients:
         return self.may_be_stable & (slack > 0.0)
 
 
-def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> RouthCoefficients:
+def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> _RouthCoefficients:
     """Routh-Hurwitz quantities of (..., 2, 2) stiffness [N/m] and damping [N s/m]."""
     k = np.asarray(stiffness, dtype=float)
     c = np.asarray(damping, dtype=float)
@@ -110,7 +110,7 @@ def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> RouthCoeffic
         shift_x = (cxx * (kxx - kyy) + kxy * cyx + kyx * cxy) / trace
         shift_y = (cyy * (kyy - kxx) + kxy * cyx + kyx * cxy) / trace
         shifted = shift_x * shift_y - kxy * kyx
-    return RouthCoefficients(
+    return _RouthCoefficients(
         trace_damping=trace,
         det_damping=cxx * cyy - cxy * cyx,
         det_stiffness=kxx * kyy - kxy * kyx,
@@ -120,7 +120,7 @@ def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> RouthCoeffic
     )
 
 
-def _verdicts(routh: RouthCoefficients) -> NDArray[np.str_]:
+def _verdicts(routh: _RouthCoefficients) -> NDArray[np.str_]:
     """`Stability` of every point; with K_e > 0 only the signs of det C and det(K - K_e I) count."""
     det_c, shifted = np.broadcast_arrays(routh.det_damping, routh.det_shifted)
     possible = routh.may_be_stable

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-class FilmForce(Protocol):
+class _FilmForce(Protocol):
     """A film's force at any position and velocity, as `rotorsim.orbit` has them."""
 
     @property
@@ -54,7 +54,7 @@ class ActuatedForce:
         The feedback is not one of the journal's state.
     """
 
-    film: FilmForce
+    film: _FilmForce
     feedback: StateFeedback
     reference: tuple[float, float]
 

@@ -60,7 +60,7 @@ class DecrementCurve:
         return float(np.interp(self.anticipated, self.stiffness, self.decrement))
 
 
-def destabilised(machine: Machine, stiffness: Mapping[int, float]) -> Machine:
+def _destabilised(machine: Machine, stiffness: Mapping[int, float]) -> Machine:
     """Machine with cross stiffnesses k_xy = -k_yx [N/m] at nodes."""
     more = [Mount(node, cross_stiffness(q), f"Q at node {node}") for node, q in stiffness.items()]
     return replace(machine, supports=[*machine.mounts, *more])
@@ -76,7 +76,7 @@ class _OverStiffness:
 
     def __call__(self, parameter: float, /) -> Eigenmodes | None:
         shares = {node: share * parameter for node, share in self.shares.items()}
-        machine = destabilised(self.machine, shares)
+        machine = _destabilised(self.machine, shares)
         return machine_spectrum(machine, np.array([self.speed]))(self.speed)
 
 

@@ -21,7 +21,7 @@ from .response import UnbalanceResponse
 
 Array = NDArray[np.float64]
 
-CRITICAL_AMPLIFICATION = 2.5
+_CRITICAL_AMPLIFICATION = 2.5
 """Amplification factor from which a peak is a critical speed."""
 _VIBRATION = 25.4e-6
 """[m]"""
@@ -88,7 +88,7 @@ def required_margin(amplification: float, below: bool) -> float:
     below : bool
         Whether the critical speed lies below the range of speeds, else above it.
     """
-    if amplification < CRITICAL_AMPLIFICATION:
+    if amplification < _CRITICAL_AMPLIFICATION:
         return 0.0
     part = 17.0 * (1.0 - 1.0 / (amplification - 1.5))
     return (min(16.0, part) if below else min(26.0, 10.0 + part)) / 100.0
@@ -112,11 +112,11 @@ def margin_check(peak: Peak, place: str, continuous: tuple[float, float], editio
     if factor is None:
         return Check(name, where, actual, None, ">=", "", "", edition, None, peak.note)
     note = f"AF {factor:.2f}"
-    if factor < CRITICAL_AMPLIFICATION:
-        formula = f"none for AF below {CRITICAL_AMPLIFICATION:g}"
+    if factor < _CRITICAL_AMPLIFICATION:
+        formula = f"none for AF below {_CRITICAL_AMPLIFICATION:g}"
         return Check(name, where, actual, 0.0, ">=", "", formula, edition, True, note)
     if low <= peak.speed <= high:
-        formula = f"no peak with AF of {CRITICAL_AMPLIFICATION:g} or more within the range"
+        formula = f"no peak with AF of {_CRITICAL_AMPLIFICATION:g} or more within the range"
         return Check(name, where, 0.0, None, ">=", "", formula, edition, False, note)
     below = peak.speed < low
     formula = _MARGIN_BELOW if below else _MARGIN_ABOVE

@@ -20,7 +20,7 @@ from .thresholds import critical_speeds
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-HALF_POWER = 0.5**0.5
+_HALF_POWER = 0.5**0.5
 """Of the peak: where the amplification factor's speeds N_1 and N_2 are taken (API 684)."""
 _POINTS = 400
 """Speeds of a response over its whole range, at least."""
@@ -160,13 +160,13 @@ def probe_responses(
             ProbeResponse(
                 probe.name or f"probe {number}", probe.at, probe.angle, speeds, np.abs(along),
                 np.mod(lag, 2.0 * np.pi), response.major_axis(node),
-                find_peaks(amplitude_along(machine, node, probe.angle), speeds, np.abs(along)),
+                find_peaks(_amplitude_along(machine, node, probe.angle), speeds, np.abs(along)),
             )
         )  # fmt: skip
     return tuple(found)
 
 
-def amplitude_along(machine: Machine, node: int, angle: float) -> Callable[[float], float]:
+def _amplitude_along(machine: Machine, node: int, angle: float) -> Callable[[float], float]:
     """Return the amplitude [m] along a direction at a node as a function of speed [rad/s]."""
 
     def amplitude(speed: float) -> float:
@@ -213,7 +213,7 @@ def _half_power(
     """Nearest speed on one side where the amplitude falls to 0.707 of the peak, or why not."""
     from scipy.optimize import brentq
 
-    level = HALF_POWER * top.amplitude
+    level = _HALF_POWER * top.amplitude
     where = "above" if side > 0 else "below"
     onwards = np.flatnonzero(side * (speeds - top.speed) > 0.0)[::side]
     near = top.speed

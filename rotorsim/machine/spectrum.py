@@ -14,7 +14,7 @@ from .matrices import first_order
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-MatrixOf = Callable[[float], Array]
+_MatrixOf = Callable[[float], Array]
 
 _ROUNDINGS = 10.0
 """Size of the error of an eigenvalue solver and of the matrices, in roundings of their norm."""
@@ -74,7 +74,7 @@ class Spectrum(Protocol):
 class MatrixSpectrum:
     """All modes of a state matrix on displacements, then velocities."""
 
-    matrix: MatrixOf
+    matrix: _MatrixOf
     unknowns: int | None = None
 
     def __call__(self, parameter: float, /) -> Eigenmodes | None:

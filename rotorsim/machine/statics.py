@@ -22,8 +22,8 @@ Law = Callable[[Array], tuple[Array, Array]]
 
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s^2] (ISO 80000-3)."""
-MAX_STEPS = 60
-TOLERANCE = 1e-8
+_MAX_STEPS = 60
+_TOLERANCE = 1e-8
 """Of the reactions, relative to the load of the whole rotor."""
 
 
@@ -76,14 +76,14 @@ def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Ar
     The rotor's rigid motions do no work: for each plane the two reactions balance the forces along
     a translation and a rotation, taken from the stiffness matrix' own rigid motions.
     """
-    motions = rigid_motions(rotor)
+    motions = _rigid_motions(rotor)
     at = np.array(
         [[motions[i][rotor.planes[node][a]] for node in nodes for a in (0, 1)] for i in range(4)]
     )
     return np.asarray(np.linalg.solve(at, motions @ force), dtype=float).reshape(2, 2)
 
 
-def rigid_motions(rotor: Rotor) -> Array:
+def _rigid_motions(rotor: Rotor) -> Array:
     """Displacements (4, size) of the rotor's free motions: two translations, two rotations.
 
     Raises
@@ -188,8 +188,8 @@ def static_equilibrium(
     else:
         loads = fixed_loads.copy() if start is None else np.asarray(start, dtype=float).ravel()
         journal, off, slope = answer(loads)
-        for _ in range(MAX_STEPS):
-            if np.abs(off).max() < TOLERANCE * total:
+        for _ in range(_MAX_STEPS):
+            if np.abs(off).max() < _TOLERANCE * total:
                 break
             step = -np.linalg.solve(slope, off)
             share = 1.0
@@ -211,6 +211,6 @@ def static_equilibrium(
         reactions=np.asarray(loads, dtype=float).reshape(-1, 2),
         journal=journal.reshape(-1, 2),
         displacement=displacement,
-        converged=residual < TOLERANCE,
+        converged=residual < _TOLERANCE,
         residual=residual,
     )

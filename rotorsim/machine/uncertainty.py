@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError, RotorsimError
 
 Array = NDArray[np.float64]
-Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
+_Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 
 
 class SampleError(RotorsimError):
@@ -224,7 +224,7 @@ def propagate(
     count: int = 128,
     method: Literal["sobol", "latin_hypercube"] = "sobol",
     seed: int = 0,
-    mapper: Mapper = map,
+    mapper: _Mapper = map,
 ) -> Propagation:
     """Carry tolerances through `function`.
 

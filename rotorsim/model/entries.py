@@ -23,7 +23,7 @@ from ..arguments import finite_number
 from ..errors import InputError
 from ..units import QUANTITIES, parse_quantity
 
-Names = TypeVar("Names", bound=StrEnum)
+_Names = TypeVar("_Names", bound=StrEnum)
 
 
 @dataclass(frozen=True)
@@ -330,7 +330,7 @@ def _checked_tuple(inner: tuple[Any, ...], value: Any, key: str) -> tuple[Any, .
     return value if isinstance(value, tuple) and checked == value else checked
 
 
-def choice(names: type[Names], value: object) -> Names:
+def choice(names: type[_Names], value: object) -> _Names:
     """Return the member of an enumeration that is named."""
     return names(one_of(list(names), value))
 

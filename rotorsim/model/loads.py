@@ -22,9 +22,9 @@ from .entries import (
 )
 
 _Force = Annotated[float, Quantity("force", "500 N", "any")]
-Forces = Annotated[tuple[_Force, _Force], Example(["500 N", "0 N"])]
+_Forces = Annotated[tuple[_Force, _Force], Example(["500 N", "0 N"])]
 _Phase = Annotated[float, Quantity("angle", "90 deg", "any")]
-Phases = tuple[_Phase, _Phase]
+_Phases = tuple[_Phase, _Phase]
 _Acceleration = Annotated[float, Quantity("acceleration", "10 m/s^2", "any")]
 
 
@@ -42,7 +42,7 @@ class _PlaceEntry(Leaf):
         return list(_Place).index(choice(_Place, value))
 
 
-Node = Annotated[int, Key("on"), _PlaceEntry()]
+_Node = Annotated[int, Key("on"), _PlaceEntry()]
 
 
 def _check_times(load: StepForce | HarmonicForce | BaseMotion) -> None:
@@ -55,10 +55,10 @@ def _check_times(load: StepForce | HarmonicForce | BaseMotion) -> None:
 class StepForce:
     """A force (fx, fy) [N] on a node from `start` until `stop` [s]."""
 
-    force: Forces
+    force: _Forces
     start: Instant = 0.0
     stop: Duration = math.inf
-    node: Node = 0
+    node: _Node = 0
 
     def __post_init__(self) -> None:
         _check_times(self)
@@ -68,12 +68,12 @@ class StepForce:
 class HarmonicForce:
     """A force fx cos(W t + px), fy cos(W t + py): forces [N], frequency W [rad/s], phases [rad]."""
 
-    force: Forces
+    force: _Forces
     frequency: Frequency
-    phase: Phases = (0.0, 0.0)
+    phase: _Phases = (0.0, 0.0)
     start: Instant = 0.0
     stop: Duration = math.inf
-    node: Node = 0
+    node: _Node = 0
 
     def __post_init__(self) -> None:
         _check_times(self)
@@ -98,7 +98,7 @@ class BaseMotion:
 
     displacement: Annotated[Pair, Example(["10 um", "0 um"])]
     frequency: Frequency
-    phase: Phases = (0.0, 0.0)
+    phase: _Phases = (0.0, 0.0)
     start: Instant = 0.0
     stop: Duration = math.inf
 

@@ -15,18 +15,18 @@ from .entries import Example, Leaf, Number, Quantity, Temperature, check
 ZERO_CELSIUS = 273.15
 
 
-LEAST_KINEMATIC = 0.35e-6
+_LEAST_KINEMATIC = 0.35e-6
 """Below this [m2/s] the Walther law means nothing."""
-TYPICAL = {"density": 860.0, "specific_heat": 2000.0, "thermal_conductivity": 0.13}
+_TYPICAL = {"density": 860.0, "specific_heat": 2000.0, "thermal_conductivity": 0.13}
 """Of a mineral oil, SI: used where they do not enter (an isothermal film's forces)."""
 
-DynamicViscosity = Annotated[float, Quantity("dynamic viscosity")]
-Coefficient = Annotated[
+_DynamicViscosity = Annotated[float, Quantity("dynamic viscosity")]
+_Coefficient = Annotated[
     float, Quantity("temperature coefficient", "0.034 / delta_degC", "not_negative")
 ]
-Density = Annotated[float, Quantity("density", "860 kg/m^3")]
-SpecificHeat = Annotated[float, Quantity("specific heat")]
-Conductivity = Annotated[float, Quantity("thermal conductivity")]
+_Density = Annotated[float, Quantity("density", "860 kg/m^3")]
+_SpecificHeat = Annotated[float, Quantity("specific heat")]
+_Conductivity = Annotated[float, Quantity("thermal conductivity")]
 
 
 @runtime_checkable
@@ -62,9 +62,9 @@ class ExponentialViscosity:
     0.014033
     """
 
-    reference_viscosity: DynamicViscosity
+    reference_viscosity: _DynamicViscosity
     reference_temperature: Temperature
-    temperature_coefficient: Coefficient = 0.0
+    temperature_coefficient: _Coefficient = 0.0
 
     def __post_init__(self) -> None:
         check(self, "lubricant")
@@ -210,9 +210,9 @@ class Lubricant:
     """
 
     law: ViscosityLaw
-    density: Density
-    specific_heat: SpecificHeat
-    thermal_conductivity: Conductivity
+    density: _Density
+    specific_heat: _SpecificHeat
+    thermal_conductivity: _Conductivity
     temperature_range: tuple[float, float] = (ZERO_CELSIUS - 20.0, ZERO_CELSIUS + 150.0)
 
     def __post_init__(self) -> None:
@@ -260,7 +260,7 @@ def oil(
     *,
     viscosity: Annotated[_Viscosity | None, Example("0.0277 Pa*s")] = None,
     reference_temperature: Temperature | None = None,
-    viscosity_temperature_coefficient: Coefficient | None = None,
+    viscosity_temperature_coefficient: _Coefficient | None = None,
     iso_vg: Annotated[float, Number(above=5.0, most=5000.0, hint="for example 32")] | None = None,
     viscosity_index: Annotated[
         float,
@@ -272,9 +272,9 @@ def oil(
     ]
     | None = None,
     viscosity_points: tuple[_Point, _Point] | None = None,
-    density: Density | None = None,
-    specific_heat: SpecificHeat | None = None,
-    thermal_conductivity: Conductivity | None = None,
+    density: _Density | None = None,
+    specific_heat: _SpecificHeat | None = None,
+    thermal_conductivity: _Conductivity | None = None,
 ) -> Lubricant:
     """Make an oil from exactly one description of its viscosity.
 
@@ -288,7 +288,7 @@ def oil(
     viscosity_points : pair of (temperature [K], Viscosity), optional
         Two points of the Walther law.
     density, specific_heat, thermal_conductivity : float, optional
-        Typical ones (`TYPICAL`) by default, where the viscosity needs no density.
+        Typical ones (`_TYPICAL`) by default, where the viscosity needs no density.
 
     Raises
     ------
@@ -330,9 +330,9 @@ def oil(
             law = _through(viscosity_points, known)
     return Lubricant(
         law,
-        density=density or TYPICAL["density"],
-        specific_heat=specific_heat or TYPICAL["specific_heat"],
-        thermal_conductivity=thermal_conductivity or TYPICAL["thermal_conductivity"],
+        density=density or _TYPICAL["density"],
+        specific_heat=specific_heat or _TYPICAL["specific_heat"],
+        thermal_conductivity=thermal_conductivity or _TYPICAL["thermal_conductivity"],
     )
 
 
@@ -357,10 +357,10 @@ def _exponential(
 def _through(points: tuple[_Point, _Point], density: float) -> WaltherViscosity:
     first, second = ((temperature, mu.dynamic(density)) for temperature, mu in points)
     for index, (_, mu) in enumerate((first, second)):
-        if mu / density < LEAST_KINEMATIC:
+        if mu / density < _LEAST_KINEMATIC:
             raise InputError(
                 f"is too thin for the Walther law (kinematic viscosity {mu / density * 1e6:.3g} "
-                f"mm2/s, at least {LEAST_KINEMATIC * 1e6:g} is needed)",
+                f"mm2/s, at least {_LEAST_KINEMATIC * 1e6:g} is needed)",
                 key=f"lubricant.viscosity_points[{index}]",
             )
     try:

@@ -55,9 +55,9 @@ class MatrixEntry(Leaf):
         return parse_quantity(text, self.quantity, example=self.text)
 
 
-StiffnessMatrix = Annotated[Matrix, MatrixEntry("stiffness", "10 MN/m")]
-DampingMatrix = Annotated[Matrix, MatrixEntry("damping", "20 kN*s/m")]
-MassMatrix = Annotated[Matrix, MatrixEntry("mass", "5 kg")]
+_StiffnessMatrix = Annotated[Matrix, MatrixEntry("stiffness", "10 MN/m")]
+_DampingMatrix = Annotated[Matrix, MatrixEntry("damping", "20 kN*s/m")]
+_MassMatrix = Annotated[Matrix, MatrixEntry("mass", "5 kg")]
 
 
 @dataclass(frozen=True)
@@ -70,9 +70,9 @@ class Pedestal:
         Of the housing, and between it and the ground [kg, N/m, N s/m].
     """
 
-    mass: MassMatrix
-    stiffness: StiffnessMatrix
-    damping: DampingMatrix = ((0.0, 0.0), (0.0, 0.0))
+    mass: _MassMatrix
+    stiffness: _StiffnessMatrix
+    damping: _DampingMatrix = ((0.0, 0.0), (0.0, 0.0))
 
 
 @dataclass(frozen=True)
@@ -101,9 +101,9 @@ class SupportEntry:
     name: str = ""
     bearing: str | None = None
     coefficients: str | None = None
-    stiffness: StiffnessMatrix | None = None
-    damping: DampingMatrix | None = None
-    mass: MassMatrix | None = None
+    stiffness: _StiffnessMatrix | None = None
+    damping: _DampingMatrix | None = None
+    mass: _MassMatrix | None = None
     elevation: Displacement = 0.0
     angle: Angle = 0.0
     pedestal: Pedestal | None = None
@@ -142,9 +142,9 @@ class SealEntry:
     at: Annotated[Place, Example("700 mm")]
     name: str = ""
     coefficients: str | None = None
-    stiffness: StiffnessMatrix | None = None
-    damping: DampingMatrix | None = None
-    mass: MassMatrix | None = None
+    stiffness: _StiffnessMatrix | None = None
+    damping: _DampingMatrix | None = None
+    mass: _MassMatrix | None = None
 
     def __post_init__(self) -> None:
         given = [key for key in ("coefficients", "stiffness") if getattr(self, key) is not None]

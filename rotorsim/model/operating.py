@@ -12,11 +12,11 @@ from ..errors import InputError
 from .entries import Angle, Example, Mass, Number, Quantity, Speed, check
 
 MAX_COUNT = 100_000
-Eccentricity = Annotated[
+_Eccentricity = Annotated[
     float, Number(least=0.0, below=1.0, hint="it lies between 0 and 1, for example 0.5")
 ]
 Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
-Count = Annotated[int, Number(least=1, most=MAX_COUNT)]
+_Count = Annotated[int, Number(least=1, most=MAX_COUNT)]
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class SpeedRange(_Range):
 
     start: Annotated[Speed, Example("500 rpm")]
     stop: Annotated[Speed, Example("15000 rpm")]
-    count: Annotated[Count, Example(30)]
+    count: Annotated[_Count, Example(30)]
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class MassRange(_Range):
 
     start: Annotated[Mass, Example("100 kg")]
     stop: Annotated[Mass, Example("3000 kg")]
-    count: Annotated[Count, Example(100)]
+    count: Annotated[_Count, Example(100)]
 
 
 def ascending(given: tuple[float, ...] | _Range, key: str) -> tuple[float, ...]:
@@ -123,7 +123,7 @@ class Operating:
     """
 
     speed: tuple[Speed, ...] | SpeedRange
-    eccentricity_ratio: Eccentricity | None = None
+    eccentricity_ratio: _Eccentricity | None = None
     load: Load | None = None
     load_direction: Angle = 0.0
 

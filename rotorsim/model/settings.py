@@ -22,9 +22,9 @@ from .entries import (
     nearest,
 )
 
-MAX_RATIOS = 64
+_MAX_RATIOS = 64
 """Frequency ratios at which K and C are given besides."""
-MAX_CELLS = 20_000_000
+_MAX_CELLS = 20_000_000
 """Cells of the largest film or bush that is accepted."""
 
 
@@ -129,9 +129,9 @@ class MeshSize:
         check(self, "film.mesh")
         if self.axial % 2:
             raise InputError("must be even", key="film.mesh.axial", value=self.axial)
-        if self.circumferential * self.axial * max(self.cross_film, self.bush_radial) > MAX_CELLS:
+        if self.circumferential * self.axial * max(self.cross_film, self.bush_radial) > _MAX_CELLS:
             raise InputError(
-                f"has more than {MAX_CELLS} cells; the default is 156 x 48 x 24 x 24",
+                f"has more than {_MAX_CELLS} cells; the default is 156 x 48 x 24 x 24",
                 key="film.mesh",
             )
 
@@ -162,8 +162,8 @@ class FilmSettings:
     def __post_init__(self) -> None:
         check(self, "film")
         ratios = self.frequency_ratios
-        if len(ratios) > MAX_RATIOS:
-            raise InputError(f"must hold at most {MAX_RATIOS} entries", key="film.frequency_ratio")
+        if len(ratios) > _MAX_RATIOS:
+            raise InputError(f"must hold at most {_MAX_RATIOS} entries", key="film.frequency_ratio")
         if any(high <= low for low, high in pairwise(ratios)):
             raise InputError(
                 "must be above 0 and ascend", key="film.frequency_ratio", value=list(ratios)

@@ -41,7 +41,7 @@ def _with_load(case: Case, load: float) -> Case:
     return dataclasses.replace(case, target=LoadTarget(load))
 
 
-def with_clearance(case: Case, radial_clearance: float) -> Case:
+def _with_clearance(case: Case, radial_clearance: float) -> Case:
     """`case` with another radial clearance [m]."""
     bearing = dataclasses.replace(case.bearing, radial_clearance=radial_clearance)
     return dataclasses.replace(case, bearing=bearing)
@@ -87,7 +87,7 @@ def with_mesh(scenario: Scenario, mesh: MeshSize) -> Scenario:
 
 
 _CHANGES = {
-    "radial_clearance": with_clearance,
+    "radial_clearance": _with_clearance,
     "applied_load": _with_load,
     "supply_temperature": _with_supply_temperature,
     "viscosity": _with_viscosity,

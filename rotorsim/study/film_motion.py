@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _FRAMES_PER_REVOLUTION = 8
-FIRST_REVOLUTIONS, LAST_REVOLUTIONS = 8, 32
+_FIRST_REVOLUTIONS, _LAST_REVOLUTIONS = 8, 32
 """At the run's beginning and end, shown in full."""
 _BETWEEN = 64
 """Frames of what lies between, each at a whole turn of the shaft."""
@@ -147,7 +147,7 @@ def _shown_samples(orbit: Orbit) -> NDArray[np.intp]:
     turn = orbit.samples_per_revolution
     step = max(1, turn // _FRAMES_PER_REVOLUTION)
     every = np.arange(0, orbit.t.size, step)
-    first, last = FIRST_REVOLUTIONS * turn, orbit.t.size - LAST_REVOLUTIONS * turn
+    first, last = _FIRST_REVOLUTIONS * turn, orbit.t.size - _LAST_REVOLUTIONS * turn
     turns = np.arange(first, max(last, first), turn)
     few = turns[:: max(1, -(-turns.size // _BETWEEN))]
     return np.unique(np.concatenate([every[(every <= first) | (every >= last)], few]))

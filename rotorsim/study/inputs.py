@@ -15,10 +15,10 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model import Bearing
 
-Rows = list[Row]
+_Rows = list[Row]
 
 
-def input_rows(scenario: Scenario) -> dict[str, Rows]:
+def input_rows(scenario: Scenario) -> dict[str, _Rows]:
     """Everything that the results rest on, defaults included, by topic."""
     return {
         "bearing": _bearing(scenario),
@@ -44,7 +44,7 @@ def _degrees(value: float) -> str:
     return f"{number(math.degrees(value))}°"
 
 
-def _bearing(scenario: Scenario) -> Rows:
+def _bearing(scenario: Scenario) -> _Rows:
     bearing, clearances = scenario.bearing, scenario.radial_clearances
     rows = [
         Row("journal radius", _millimetres(bearing.journal_radius)),
@@ -89,7 +89,7 @@ def _per_mille(bearing: Bearing, scenario: Scenario) -> list[str]:
     return [f"{number(1e3 * ratio)} ‰" for ratio in ratios]
 
 
-def _oil(scenario: Scenario) -> Rows:
+def _oil(scenario: Scenario) -> _Rows:
     oil, supply = scenario.lubricant, scenario.thermal.supply_temperature
     temperatures = sorted({supply, 40.0 + ZERO_CELSIUS, 100.0 + ZERO_CELSIUS})
     low, high = oil.temperature_range
@@ -107,7 +107,7 @@ def _oil(scenario: Scenario) -> Rows:
     ]
 
 
-def _grade(scenario: Scenario) -> Rows:
+def _grade(scenario: Scenario) -> _Rows:
     """The ISO VG grade as the scenario's text has it: the law that follows from it keeps none."""
     given = tomllib.loads(scenario.text).get("lubricant", {})
     if "iso_vg" not in given:
@@ -117,7 +117,7 @@ def _grade(scenario: Scenario) -> Rows:
     return [Row("oil", f"ISO VG {number(given['iso_vg'])}{more}")]
 
 
-def _film(scenario: Scenario) -> Rows:
+def _film(scenario: Scenario) -> _Rows:
     film, thermal = scenario.film, scenario.thermal
     mesh = film.mesh
     rows = [
@@ -149,7 +149,7 @@ def _film(scenario: Scenario) -> Rows:
     return rows
 
 
-def _operation(scenario: Scenario) -> Rows:
+def _operation(scenario: Scenario) -> _Rows:
     speeds, target = scenario.speeds, scenario.target
     many = f"{speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm, {len(speeds)} values"
     rows = [Row("speed", many if len(speeds) > 1 else f"{speeds[0] * RPM:.0f} rpm")]

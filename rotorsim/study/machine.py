@@ -37,7 +37,7 @@ from .sweep import Progress, sweep_points
 
 Array = NDArray[np.float64]
 
-GIVEN = "given"
+_GIVEN = "given"
 """Name of the thermal model of a machine without films."""
 _SUBDIVISIONS = 4
 """Of every interval of speeds, where thresholds are looked for."""
@@ -204,7 +204,7 @@ def analyse_machine(
         carries load has no stiffness.
     """
     names = {str(model) for one in description.bearings.values() for model in one.thermal_models}
-    ordered = [str(model) for model in ThermalModel if str(model) in names] or [GIVEN]
+    ordered = [str(model) for model in ThermalModel if str(model) in names] or [_GIVEN]
     rotor = description.rotor_with_unbalance()
     total = len(ordered) * len(description.bearings) * len(description.operating.speeds)
     done = 0
@@ -495,7 +495,7 @@ def _rotation(angle: float) -> Array:
     return np.array([[cos, -sin], [sin, cos]])
 
 
-def modes_at(found: Modes, index: int) -> list[dict[str, Any]]:
+def _modes_at(found: Modes, index: int) -> list[dict[str, Any]]:
     """Modes at one speed as plain data, ascending in undamped frequency.
 
     One of each conjugate pair, and the real eigenvalues, whose frequency is 0.
@@ -539,7 +539,7 @@ def _stability(result: MachineResult) -> dict[str, Any]:
     found = result.modes
     return {
         "speeds": result.known.tolist(),
-        "modes": [] if found is None else [modes_at(found, i) for i in range(result.known.size)],
+        "modes": [] if found is None else [_modes_at(found, i) for i in range(result.known.size)],
         "critical_speeds": [
             {"speed": one.speed, "whirl": one.whirl, "damping_ratio": one.damping_ratio}
             for one in result.critical_speeds

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from ..machine.map import StabilityMap
     from ..orbit import Orbit
 
-Result = TypeVar("Result")
+_Result = TypeVar("_Result")
 Announce = Callable[[str], None]
 _MAP_CELLS = 241
 """Along each axis of the stability map."""
@@ -93,7 +93,7 @@ class Attempts:
     announce: Announce
     problems: list[str] = field(default_factory=list)
 
-    def __call__(self, label: str, step: Callable[[], Result], instead: Result) -> Result:
+    def __call__(self, label: str, step: Callable[[], _Result], instead: _Result) -> _Result:
         """Announce and do one step; note a failure and go on with `instead`."""
         self.announce(label)
         try:

@@ -126,7 +126,7 @@ def orbit_problem(
                 'needs a coefficient table: force is "linear"', source=scenario.source, key="orbit"
             )
         model = thermal_model or _preferred_model(table)
-        force, bearing = linear_force(scenario, table, model)
+        force, bearing = _linear_force(scenario, table, model)
         # the coefficients hold about the loaded position, so that the load itself is left out
         load, carried = 0.0, _carried_load(table, model, settings, schedule.speeds[0])
         placed = _has_positions(table)
@@ -166,7 +166,7 @@ def _carried_load(
     return curve_of(table, model, settings.radial_clearance).at(speed).load
 
 
-def linear_force(
+def _linear_force(
     scenario: Scenario, table: CoefficientTable, model: str
 ) -> tuple[LinearForce, Bearing]:
     """Stiffness and damping of the table, about its static positions."""

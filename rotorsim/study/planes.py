@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 _FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
 """What the film must be solved again for."""
-DIMENSIONS = ("speed", "mass", *_FILM_DIMENSIONS)
+_DIMENSIONS = ("speed", "mass", *_FILM_DIMENSIONS)
 _CELLS = 101
 _SPEEDS = 12
 
@@ -38,7 +38,7 @@ class Plane:
     Attributes
     ----------
     x, y : str
-        Two of `DIMENSIONS`.
+        Two of `_DIMENSIONS`.
     held : mapping of str to float
         The others.
     dataset : xarray.Dataset
@@ -103,7 +103,7 @@ def plane_of_scenario(
     ----------
     scenario : Scenario
     x, y : str
-        Two of `DIMENSIONS`.
+        Two of `_DIMENSIONS`.
     values : mapping, optional
         Values along x and y, ascending (SI). For what changes the film these are solved; the map
         goes from the first to the last. The scenario's, or a span about them, by default.
@@ -207,15 +207,15 @@ def plane_of_table(
             raise InputError("an axis needs two values or more", key=name, value=float(along[0]))
     chart = stability_map(table, axes["mass"], axes["speed"])
     dataset = chart.plane(x, y)
-    kept = {name: float(dataset[name]) for name in DIMENSIONS if name in dataset.coords
+    kept = {name: float(dataset[name]) for name in _DIMENSIONS if name in dataset.coords
             and name not in (x, y) and np.isfinite(float(dataset[name]))}  # fmt: skip
     return Plane(x, y, kept, dataset, size, failed)
 
 
 def _check_axes(x: str, y: str, held: Mapping[str, float] | None) -> None:
     for key, name in (("x", x), ("y", y)):
-        if name not in DIMENSIONS:
-            raise InputError(f"must be one of {', '.join(DIMENSIONS)}", key=key, value=name)
+        if name not in _DIMENSIONS:
+            raise InputError(f"must be one of {', '.join(_DIMENSIONS)}", key=key, value=name)
         if name in (held or {}):
             raise InputError("is an axis of the map and cannot be held as well", key=name)
     if x == y:

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     Points = tuple[OperatingPoint, ...]
 
-Item = TypeVar("Item")
-Result = TypeVar("Result")
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
 _THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 
 
@@ -51,11 +51,11 @@ def on_processes(
 
 
 def map_on_processes(
-    function: Callable[[Item], Result],
-    items: Iterable[Item],
+    function: Callable[[_Item], _Result],
+    items: Iterable[_Item],
     workers: int,
     done: Callable[[int], None] | None = None,
-) -> list[Result]:
+) -> list[_Result]:
     """Results of `function` on every item, in their order, computed by `workers` processes.
 
     Parameters
@@ -74,7 +74,7 @@ def map_on_processes(
         What `function` raised, and `BrokenExecutor` where a process was lost.
     """
     report = done or (lambda _count: None)
-    results: list[Result] = []
+    results: list[_Result] = []
     if workers == 1:
         for item in items:
             results.append(function(item))

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-INPUTS = {
+_INPUTS = {
     "radial_clearance": "radial_clearance",
     "viscosity": "viscosity",
     "load": "applied_load",
@@ -86,7 +86,7 @@ class FilmThreshold:
         SampleError
             The film did not converge.
         """
-        case = changed(self.case, {INPUTS[name]: value for name, value in sample.items()})
+        case = changed(self.case, {_INPUTS[name]: value for name, value in sample.items()})
         points = self._along(case, sorted({*self.speeds, self.operating_speed}))
         at = points[self.operating_speed]
         crossings = self._thresholds(points)
