@@ -94,24 +94,29 @@ def machine_stability(
     return _closing(output, results)
 
 
-def run_machine(output: Output, path: Path, workers: int | None) -> int:
-    """Do the whole job on a machine: films, modes, unbalance response, lateral checks."""
+def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -> int:
+    """Do the whole job on a machine: films, modes, unbalance response, lateral checks, figures."""
+    from ..show.machine_job import write_machine_figures
     from ..study.lateral import lateral_document, lateral_study, response_document
     from ..study.machine import stability_document, supports_document
 
     results = _analysed(output, path, workers)
     last = results[next(reversed(results))]
     study = lateral_study(last)
+    pictures = folder / "figures" / path.stem
+    files = write_machine_figures(results, study, pictures)
     output.document(
         stability_document(results)
         | {
             "supports": supports_document(last),
             "unbalance_response": response_document(study),
             "lateral": lateral_document(study),
+            "files": {"figures": files},
         }
     )
     if not (output.json or output.quiet):
         output.show(*_support_tables(results), *_stability_tables(results), *_lateral_tables(study))
+        output.note(f"figures: {pictures}")
     for text in study.notes:
         output.warn(text)
     return _closing(output, results)

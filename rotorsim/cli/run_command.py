@@ -24,7 +24,7 @@ def run(
     from .machine_commands import is_machine, run_machine
 
     if is_machine(scenario):
-        return run_machine(output, scenario, workers)
+        return run_machine(output, scenario, folder, workers)
     from ..files.scenario import load_scenario
     from ..show.job import write_results
     from ..study.main_job import compute, summary

@@ -218,6 +218,9 @@ def test_run_tells_supports_response_and_checks(here: CommandLine, tmp_path):
     assert max(probe["amplitude"]) > 0.0
     assert [one["name"] for one in found["supports"]] == ["support 1", "right"]
     assert found["lateral"]["notes"]
+    drawn = {name.rpartition("/")[2] for name in found["files"]["figures"]}
+    assert {"rotor.png", "campbell.png", "unbalance_response.png"} <= drawn
+    assert (tmp_path / "figures" / "rotor" / "rotor.png").stat().st_size > 5000
 
 
 def test_python_answers_questions_to_a_machine_file(tmp_path):
