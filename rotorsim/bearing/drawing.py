@@ -176,7 +176,9 @@ def _size_warnings(numbers: DrawingNumbers) -> list[str]:
 
 
 def _groove_warnings(bearing: Bearing) -> list[str]:
-    found = []
+    found: list[str] = []
+    if bearing.pads:  # the openings between them are made by the pads
+        return found
     for groove in bearing.grooves:
         place = f"groove at {math.degrees(groove.center) % 360.0:.4g} deg from the load line"
         if _in_loaded_zone(groove):

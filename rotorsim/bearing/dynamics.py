@@ -37,8 +37,6 @@ from .whirl import WhirlThreshold, rigid_threshold, routh_coefficients
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-_STANDARD_GRAVITY = 9.80665
-"""[m/s2]; turns a load into a mass where there is no threshold to compare with."""
 _DEFAULT_RATIO = 0.5
 """Whirl over shaft frequency at which coefficients are stated where there is no threshold."""
 _NOTICEABLE = 0.01
@@ -162,7 +160,9 @@ class FilmDynamics:
             scale = radial_clearance * self.speed**2 / load
             return WhirlThreshold(verdict, mass, whirl, ratio, mass * scale)
         crossings = self._crossings()
-        below = 0.5 * crossings[0][0] if crossings else load / _STANDARD_GRAVITY
+        # Without a crossing any mass tells: one that would resonate near the shaft's frequency.
+        typical = float(np.abs(np.diag(self.stiffness)[:2]).max()) / self.speed**2
+        below = 0.5 * crossings[0][0] if crossings else typical
         stable = bool(np.max(_pad_eigenvalues(self, below).real) < 0.0)
         if not crossings:
             verdict = Stability.ALWAYS_STABLE if stable else Stability.ALWAYS_UNSTABLE
@@ -178,7 +178,7 @@ class FilmDynamics:
             mass,
             frequency,
             ratio,
-            mass * radial_clearance * self.speed**2 / load,
+            mass * radial_clearance * self.speed**2 / load if load > 0.0 else None,
         )
 
     def _crossings(self) -> list[tuple[float, float]]:

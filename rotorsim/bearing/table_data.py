@@ -17,7 +17,7 @@ from ..status import SolveStatus
 if TYPE_CHECKING:
     import xarray as xr
 
-    from .operating_point import OperatingPoint
+    from .operating_point import FullCoefficients, OperatingPoint
 
 
 TABLE_VERSION = 1
@@ -95,6 +95,15 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
         for i in _NAMES
         for j in _NAMES
     },
+    "unknown": ("1", "degree of freedom of journal or pad whose force it is"),
+    "other_unknown": ("1", "degree of freedom that moves"),
+    "full_stiffness": ("1", "stiffness over journal and pads [N/m, N/rad, N m/rad]"),
+    "full_damping": ("1", "damping over journal and pads [N s/m, N s/rad, N m s/rad]"),
+    "full_mass": ("1", "mass of the pads [kg, kg m, kg m2]"),
+    "critical_mass_synchronous": (
+        "kg",
+        "critical mass of kxx ... cyy alone, where the pads have motions of their own",
+    ),
     "moment_x": ("N m", "moment of the film on the journal about x, through the mid-plane"),
     "moment_y": ("N m", "moment of the film on the journal about y, through the mid-plane"),
     "coefficient_frequency_ratio": (
@@ -150,6 +159,10 @@ FULL_COEFFICIENTS = tuple(f"{kind}_{i}_{j}" for kind in "kc" for i in _NAMES for
 
 TEXTS = ("status", "stability", "cavitation")
 
+UNKNOWNS = ("unknown", "other_unknown")
+"""Dimensions of the matrices over journal and pads: force of the first, motion of the second."""
+PAD_MATRICES = ("full_stiffness", "full_damping", "full_mass")
+
 
 def cf_attributes(name: str) -> dict[str, str]:
     """``units`` and ``long_name`` of a table's variable."""
@@ -183,7 +196,54 @@ def from_points(points: Sequence[OperatingPoint], attributes: dict[str, Any]) ->
     dataset = build(
         dict(zip(DIMENSIONS, (models, clearances, speeds), strict=True)), variables, attributes
     )
-    return _with_frequency(dataset, ordered, shape)
+    return _with_pads(_with_frequency(dataset, ordered, shape), ordered, shape)
+
+
+def _with_pads(
+    dataset: xr.Dataset, points: Sequence[OperatingPoint], shape: tuple[int, ...]
+) -> xr.Dataset:
+    """Add K, C and M over journal and pads, where there are pads.
+
+    NaN in the rows and columns of pads without load, and where a point did not converge.
+    """
+    names = list(
+        dict.fromkeys(
+            name
+            for point in points
+            if point.pads and point.coefficients_full is not None
+            for name in point.coefficients_full.names
+        )
+    )
+    if not names:
+        return dataset
+    names.sort(key=lambda name: (name.partition("_")[2].isdigit(), _pad_number(name)))
+    values = np.full((3, len(points), len(names), len(names)), np.nan)
+    for number, point in enumerate(points):
+        full = point.coefficients_full
+        if full is None:
+            continue
+        at = np.array([names.index(name) for name in full.names])
+        for kind, matrix in enumerate((full.stiffness, full.damping, full.mass)):
+            values[kind, number, at[:, None], at] = matrix
+    dimensions = (*DIMENSIONS, *UNKNOWNS)
+    size = len(names)
+    variables: dict[str, Any] = {
+        name: (dimensions, values[kind].reshape(*shape, size, size), cf_attributes(name))
+        for kind, name in enumerate(PAD_MATRICES)
+    }
+    synchronous = [p.critical_mass_synchronous for p in points]
+    column = np.array([np.nan if value is None else value for value in synchronous])
+    name = "critical_mass_synchronous"
+    variables[name] = (DIMENSIONS, column.reshape(shape), cf_attributes(name))
+    text = _text(names)
+    return dataset.assign(variables).assign_coords(
+        {name: (name, text, cf_attributes(name)) for name in UNKNOWNS}
+    )
+
+
+def _pad_number(name: str) -> int:
+    number = name.rpartition("_")[2]
+    return int(number) if number.isdigit() else 0
 
 
 def _with_frequency(
@@ -262,7 +322,7 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
     columns: dict[str, np.ndarray] = {name: values[:, i] for i, name in enumerate(COEFFICIENTS)}
     moments = np.array([np.asarray(p.moment, dtype=float) for p in points])
     columns["moment_x"], columns["moment_y"] = moments[:, 0], moments[:, 1]
-    if any(p.coefficients_full is not None for p in points):
+    if any(_is_journal_only(p.coefficients_full) for p in points):
         full = np.array([_full_row(p) for p in points])
         columns.update(zip(FULL_COEFFICIENTS, full.T, strict=True))
     for name in SCALARS:
@@ -273,6 +333,11 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
         column = [getattr(p, name) for p in points]
         columns[name] = _text(["" if v is None else v for v in column])
     return columns
+
+
+def _is_journal_only(full: FullCoefficients | None) -> bool:
+    """Whether there are displacements and rotations of the journal, and no pads."""
+    return full is not None and full.names == _NAMES
 
 
 def _full_row(point: OperatingPoint) -> np.ndarray:

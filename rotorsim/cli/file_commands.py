@@ -22,6 +22,7 @@ class Profile(StrEnum):
     PLAIN = "plain"
     GROOVED = "grooved"
     ELLIPTICAL = "elliptical"
+    TILTING_PAD = "tilting_pad"
 
 
 class ExportFormat(StrEnum):

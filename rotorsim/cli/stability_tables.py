@@ -24,11 +24,16 @@ def curve_table(curve: StabilityCurve) -> Table:
     """One curve over speed.
 
     The critical mass is a rigid rotor's: beside another rotor it would not be that rotor's limit.
+    With tilting pads the last column is the growth rate that their coefficients, reduced at the
+    shaft's frequency, would give.
     """
     rigid = curve.eigenvalues is None or curve.mass is not None
     head = ["rpm", *(QUANTITIES[name].head for name in _THRESHOLD), "verdict"] if rigid else ["rpm"]
     if curve.eigenvalues is not None:
         head += ["growth 1/s", "whirl rpm"] if rigid else ["verdict", "growth 1/s", "whirl rpm"]
+    synchronous = curve.growth_rate_synchronous
+    if synchronous is not None:
+        head.append("synchronous 1/s")
     table = grid(curve_title(curve), *head)
     rates = curve.growth_rate
     for index, speed in enumerate(curve.speed):
@@ -40,6 +45,8 @@ def curve_table(curve: StabilityCurve) -> Table:
             if not rigid:
                 cells.append(verdict_word(rate) if math.isfinite(rate) else VERDICTS[""])
             cells += [number(rate), number(abs(slowest.imag) * RPM)]
+        if synchronous is not None:
+            cells.append(number(float(synchronous[index])))
         table.add_row(*cells)
     return table
 

@@ -8,7 +8,7 @@ _HEAD = """\
 title = "{title}"
 
 [bearing]
-journal_radius = "50 mm"            # half of the diameter
+{kind}journal_radius = "50 mm"            # half of the diameter
 length = "80 mm"
 radial_clearance = "100 um"         # half of the diametral one; a list: ["80 um", "100 um"]
 roughness = "0.8 um"                # a thinner film is reported
@@ -33,7 +33,21 @@ profile = "elliptical"              # or "three_lobe", "offset_halves"
 preload = 0.5                       # 1 - (assembled clearance / lobe clearance)
 """
     + _GROOVES,
+    "tilting_pad": """
+# The clearance above is the machined one: pad radius less journal radius. Pads all alike; pads of
+# their own are written one by one as [[bearing.pad]] with pivot_angle and what differs.
+[bearing.pads]
+count = 5
+arc = "58 deg"
+thickness = "18 mm"                 # from the pad's face to its pivot; mass and inertia follow
+offset = 0.5                        # of the pivot along the arc; 0.6: nearer to the trailing edge
+preload = 0.3                       # 1 - assembled over machined clearance
+load = "between_pads"               # or "on_pad"; or pivot_angle, that of the first pad
+pivot = { kind = "rigid" }          # stiffness | line | sphere | ball_in_socket: they give way
+feed = "flooded"                    # leading_edge_groove | spray_bar: less hot oil is carried over
+""",
 }
+_FILM_BEGINS = 'inception = "max_film"              # where the film begins: free | max_film\n'
 _OIL = """
 [lubricant]
 iso_vg = {iso_vg:g}                         # or two (temperature, viscosity) points:
@@ -44,8 +58,7 @@ thermal_conductivity = "0.13 W/(m*delta_degC)"
 
 [film]
 cavitation = "reynolds"             # full_sommerfeld | half_sommerfeld | reynolds | jfo
-inception = "max_film"              # where the film begins: free | max_film
-mesh = {{ circumferential = 96, axial = 24, cross_film = 16 }}   # halve or double to see its effect
+{begins}mesh = {{ circumferential = {around}, axial = 24, cross_film = 16 }}  # try half, and double
 
 [thermal]
 models = ["isothermal", "thd"]      # heating neglected, and solved for
@@ -54,14 +67,21 @@ inlet = "mixing"                    # warm oil comes round; "fresh": every film 
                                     # supplied oil, colder; "periodic": nothing fresh, hotter
 shaft = "insulated"                 # it takes no net heat (a long shaft); "ambient": held at
                                     # ambient temperature, far colder; or a measured temperature
-bush = "insulated"                  # no heat; "conduction": through the bush into the air, the
-                                    # most real (needs bearing.bush_outer_radius, bush_conductivity
-                                    # and bush_heat_transfer); "ambient": held there, far colder
-ambient_temperature = "40 degC"
+{bush}ambient_temperature = "40 degC"
 supply_temperature = "40 degC"
 
 [operating]
 speed = {{ start = "1000 rpm", stop = "12000 rpm", count = 12 }}
+"""
+_BUSH = """\
+bush = "insulated"                  # no heat; "conduction": through the bush into the air, the
+                                    # most real (needs bearing.bush_outer_radius, bush_conductivity
+                                    # and bush_heat_transfer); "ambient": held there, far colder
+"""
+_PADS = """\
+bush = "conduction"                 # through each pad into the oil around it; or "insulated"
+bush_conductivity = "50 W/(m*delta_degC)"
+bush_heat_transfer = "100 W/(m^2*delta_degC)"
 """
 _LOAD = """\
 load = "{load}"                      # or: eccentricity_ratio = 0.5
@@ -90,7 +110,7 @@ def scenario_text(title: str, profile: str, target: tuple[str, str | float], iso
     ----------
     title : str
     profile : str
-        ``plain``, ``grooved`` or ``elliptical``.
+        ``plain``, ``grooved``, ``elliptical`` or ``tilting_pad``.
     target : (str, value)
         ``("load", "10 kN")`` or ``("eccentricity", 0.5)``.
     iso_vg : float
@@ -101,4 +121,10 @@ def scenario_text(title: str, profile: str, target: tuple[str, str | float], iso
     quoted = str(value).replace("\\", "").replace('"', "")
     held = _LOAD.format(load=quoted) if kind == "load" else _ECCENTRICITY.format(eccentricity=value)
     safe = "".join(letter for letter in title if letter.isprintable() and letter not in '"\\')
-    return _HEAD.format(title=safe) + _BORES[profile] + _OIL.format(iso_vg=iso_vg) + held + _ROTOR
+    pads = profile == "tilting_pad"
+    head = _HEAD.format(title=safe, kind='kind = "tilting_pad"\n' if pads else "")
+    oil = _OIL.format(
+        iso_vg=iso_vg, around=150 if pads else 96, begins="" if pads else _FILM_BEGINS,
+        bush=_PADS if pads else _BUSH,
+    )  # fmt: skip
+    return head + _BORES[profile] + oil + held + _ROTOR

@@ -200,7 +200,7 @@ def _pads_at_rest(bearing: Bearing, mesh: FilmMesh) -> Array:
         columns = mesh.region == number
         clearance = bearing.clearance_of(pad)
         angle = theta[:, columns] - pad.pivot_angle
-        h[:, columns] = clearance * (1.0 - pad.preload * np.cos(angle))
+        h[:, columns] = clearance * (1.0 - bearing.preload_of(pad) * np.cos(angle))
     return h
 
 

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import Bearing, EccentricityTarget, Pad, Target
+from ..model.operating import is_unloaded
 from .banded import NoFilmError
 from .equilibrium import pressure_force
 from .geometry import CENTER, FilmGeometry, PadUnknowns, pad_unknowns
@@ -66,6 +67,7 @@ class PadFrame:
     pad : Pad
     clearance : float
         Machined [m].
+    preload : float
     arm : float
         R + t [m].
     columns : (n,) bool array
@@ -76,6 +78,7 @@ class PadFrame:
 
     pad: Pad
     clearance: float
+    preload: float
     arm: float
     columns: Flags
     unknowns: PadUnknowns
@@ -84,7 +87,7 @@ class PadFrame:
     def eccentricity(self, q: Array) -> tuple[float, float]:
         """E_n and E_t at the mid-plane [m]."""
         cos, sin = math.cos(self.pad.pivot_angle), math.sin(self.pad.pivot_angle)
-        along = q[0] * cos + q[1] * sin + self.pad.preload * self.clearance
+        along = q[0] * cos + q[1] * sin + self.preload * self.clearance
         if self.unknowns.pivot is not None:
             along -= q[self.unknowns.pivot]
         across = -q[0] * sin + q[1] * cos + self.arm * q[self.unknowns.tilt]
@@ -128,7 +131,17 @@ def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
         columns = mesh.region == number
         sine = np.sin(angles[:, columns] - pad.pivot_angle)[:, :, None]
         arm = bearing.journal_radius + pad.thickness
-        frames.append(PadFrame(pad, bearing.clearance_of(pad), arm, columns, unknowns, sine))
+        frames.append(
+            PadFrame(
+                pad,
+                bearing.clearance_of(pad),
+                bearing.preload_of(pad),
+                arm,
+                columns,
+                unknowns,
+                sine,
+            )
+        )
     return tuple(frames)
 
 
@@ -213,7 +226,7 @@ class PadSearch:
         for frame in self.frames:
             towards = math.cos(angle - frame.pad.pivot_angle)
             if towards > 1e-9 and frame.unknowns.pivot is None:
-                distances.append((1.0 - frame.pad.preload) * frame.clearance / towards)
+                distances.append((1.0 - frame.preload) * frame.clearance / towards)
         return min(distances)
 
     def _with_room(self, q: Array) -> Array:
@@ -279,7 +292,7 @@ class PadSearch:
         if self.held:
             missing[:2], stiffness[:2], stiffness[:, :2] = 0.0, 0.0, 0.0
             stiffness[[0, 1], [0, 1]] = 1.0
-            off = float(np.linalg.norm(missing)) / max(carried, 1e-300)
+            off = float(np.linalg.norm(missing)) / max(carried, 1e-9 * self._pressed(state))
             step = _solve(stiffness, missing)
         elif isinstance(self.target, EccentricityTarget):
             off = float(np.linalg.norm(missing[1:])) / max(carried, 1e-300)
@@ -299,6 +312,12 @@ class PadSearch:
         )
         self.unreachable = bool(thin < 2.0 * THINNEST and off > 1e-3)
         return following, off
+
+    def _pressed(self, state: FilmState) -> float:
+        """Sum of the pads' loads [N], what forces are compared with where there is no load."""
+        load = np.abs(state.solution.pressure * state.operator.area)
+        pressed = float(load[self.whole.mesh.region >= 0].sum())
+        return max(self.whole.mesh.multiplicity * pressed, 1e-300)
 
     def _turn(self, q: Array, missing: Array, stiffness: Array, slack: float) -> Array:
         """Newton's step that keeps the journal at its distance from the centre."""
@@ -523,7 +542,7 @@ class PadSearch:
     @property
     def supports_load(self) -> bool:
         """Whether forces along the pivots can add up to the load's direction."""
-        if self._fed:
+        if self._fed or is_unloaded(self.target):
             return True
         angles = [math.remainder(f.pad.pivot_angle, 2.0 * math.pi) for f in self.frames]
         if any(abs(angle) < 1e-9 for angle in angles):

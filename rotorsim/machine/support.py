@@ -6,20 +6,24 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..bearing.operating_point import condensed
 from ..errors import InputError, OutOfRangeError
 
 if TYPE_CHECKING:
     from ..bearing.interpolation import CoefficientInterpolator
+    from ..bearing.table import CoefficientTable
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Matrices = tuple[Array, Array, Array]
 
+JOURNAL = ("x", "y", "theta_x", "theta_y")
+"""Unknowns of a bearing that are its node's."""
 _SPEED_TOLERANCE = 1e-9
 """Relative; two speeds nearer than this are the same one written in different units."""
 
@@ -179,6 +183,55 @@ class MatrixTable(Support):
                 raise InputError(f"must be finite, of shape {shape}", key=name, value=value.shape)
             object.__setattr__(self, name, value)
 
+    @classmethod
+    def of_pads(cls, table: CoefficientTable, **choices: Any) -> MatrixTable:
+        """Return the journal and the pads of a tilting-pad bearing's table.
+
+        A pad that carries load at some of the speeds only is eliminated where it does, at the
+        shaft's frequency; the others keep their unknowns.
+
+        Parameters
+        ----------
+        table : CoefficientTable
+        **choices
+            What `CoefficientTable.select` needs to leave one curve over speed.
+
+        Raises
+        ------
+        InputError
+            The table has no pads, more than one curve, or a point that did not converge.
+        """
+        one = table.select(**choices).dataset
+        if "full_stiffness" not in one:
+            raise InputError("has no matrices over journal and pads", key="table")
+        if one["kxx"].size != one["speed"].size:
+            raise InputError("must be narrowed to one curve over speed", key="table")
+        speeds, names = one["speed"].values, [str(name) for name in one["unknown"].values]
+        shape = (speeds.size, len(names), len(names))
+        k, c, m = (
+            one[name].values.reshape(shape)
+            for name in ("full_stiffness", "full_damping", "full_mass")
+        )
+        moving: NDArray[np.bool_] = np.isfinite(np.diagonal(k, axis1=1, axis2=2))
+        if not moving[:, :2].all():
+            raise InputError("holds points that did not converge", key="table")
+        stays = np.asarray(moving.all(axis=0), dtype=bool)
+        own, size = np.flatnonzero(stays), int(stays.sum())
+        kept = np.empty((3, speeds.size, size, size))
+        for place, speed in enumerate(speeds):
+            gone = np.flatnonzero(np.asarray(moving[place] & ~stays, dtype=bool))
+            kept[:, place] = [matrix[place][own[:, None], own] for matrix in (k, c, m)]
+            order = np.concatenate([own, gone])
+            block = (order[:, None], order)
+            s = 1j * float(speed)
+            law = k[place][block] + s * c[place][block] + s * s * m[place][block]
+            change = condensed(law, size) - law[:size, :size]
+            kept[0, place] += change.real
+            kept[1, place] += change.imag / float(speed)
+        unknowns = tuple(names[place] for place in own)
+        coupled = sum(name in JOURNAL for name in unknowns)
+        return cls(speeds, *kept, unknowns=unknowns, coupled=coupled)
+
     @property
     def speeds(self) -> Array:
         """Tabulated speeds [rad/s]."""
@@ -206,6 +259,21 @@ class MatrixTable(Support):
             )  # fmt: skip
         values = np.asarray(self._curve(np.clip(omega, low, high)))
         return values[..., 0, :, :], values[..., 1, :, :], values[..., 2, :, :]
+
+
+def table_support(table: CoefficientTable, **choices: Any) -> Support:
+    """Return one curve of a table: with its pads, where it has some and all points converged.
+
+    Parameters
+    ----------
+    table : CoefficientTable
+    **choices
+        What `CoefficientTable.select` needs to leave one curve over speed.
+    """
+    one = table.select(**choices)
+    if "full_stiffness" in one.dataset and one.converged.all():
+        return MatrixTable.of_pads(one)
+    return TableSupport(one.interpolator())
 
 
 @dataclass(frozen=True, eq=False)

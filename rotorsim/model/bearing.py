@@ -275,6 +275,12 @@ class Bearing:
         """Machined clearance of a pad [m]."""
         return self.radial_clearance if pad.clearance is None else pad.clearance
 
+    def preload_of(self, pad: Pad) -> float:
+        """1 - (assembled clearance)/(machined clearance) of a pad."""
+        if pad.assembled_clearance is None:
+            return pad.preload
+        return 1.0 - pad.assembled_clearance / self.clearance_of(pad)
+
     @property
     def diameter(self) -> float:
         """Journal diameter [m]."""

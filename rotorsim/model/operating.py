@@ -12,9 +12,7 @@ from ..errors import InputError
 from .entries import Angle, Example, Mass, Number, Quantity, Speed, check
 
 MAX_COUNT = 100_000
-_Eccentricity = Annotated[
-    float, Number(least=0.0, below=1.0, hint="it lies between 0 and 1, for example 0.5")
-]
+_Eccentricity = Annotated[float, Number(least=0.0, hint="it lies between 0 and 1, for example 0.5")]
 Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
 _Count = Annotated[int, Number(least=1, most=MAX_COUNT)]
 

@@ -5,13 +5,28 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from ..errors import InputError
-from .pivots import Pivot, RigidPivot
+from .entries import Angle, Clearance, Made, Number, Quantity, check
+from .pivots import PIVOTS, Pivot, RigidPivot
 
 FULL_TURN = 2.0 * math.pi
 STEEL_DENSITY = 7850.0
 """[kg/m3]"""
+
+Extent = Annotated[float, Quantity("angle", "60 deg")]
+Thickness = Annotated[float, Quantity("length", "20 mm")]
+PivotOffset = Annotated[
+    float, Number(above=0.0, below=1.0, hint="0.5 is a pivot in the middle of the pad")
+]
+PadPreload = Annotated[
+    float, Number(above=-1.0, below=1.0, hint="1 - assembled over machined clearance")
+]
+PadPivot = Annotated[Pivot, Made(PIVOTS)]
+Density = Annotated[float, Quantity("density", "7850 kg/m^3")]
+PadMass = Annotated[float, Quantity("mass", "2 kg", "not_negative")]
+Inertia = Annotated[float, Quantity("moment of inertia", "0.002 kg*m^2", "not_negative")]
 
 
 @dataclass(frozen=True)
@@ -33,6 +48,8 @@ class Pad:
     clearance : float or None
         Machined clearance, pad radius minus journal radius [m]; None: the bearing's
         `radial_clearance`.
+    assembled_clearance : float or None
+        In place of the preload [m].
     pivot : Pivot
     density : float
         Of the pad [kg/m3], for what follows where it is not given.
@@ -47,35 +64,28 @@ class Pad:
     radius and that plus the thickness, over the bearing's length.
     """
 
-    pivot_angle: float
-    arc: float
-    thickness: float
-    offset: float = 0.5
-    preload: float = 0.0
-    clearance: float | None = None
-    pivot: Pivot = field(default_factory=RigidPivot)
-    density: float = STEEL_DENSITY
-    mass: float | None = None
-    tilt_inertia: float | None = None
-    pitch_inertia: float | None = None
+    pivot_angle: Angle
+    arc: Extent
+    thickness: Thickness
+    offset: PivotOffset = 0.5
+    preload: PadPreload = 0.0
+    clearance: Clearance | None = None
+    assembled_clearance: Clearance | None = None
+    pivot: PadPivot = field(default_factory=RigidPivot)
+    density: Density = STEEL_DENSITY
+    mass: PadMass | None = None
+    tilt_inertia: Inertia | None = None
+    pitch_inertia: Inertia | None = None
 
     def __post_init__(self) -> None:
-        checks = (
-            ("pivot_angle", math.isfinite(self.pivot_angle), "must be finite"),
-            ("arc", 0.0 < self.arc < FULL_TURN, "must be above 0 and below 360 deg"),
-            ("thickness", 0.0 < self.thickness < math.inf, "must be above 0"),
-            ("offset", 0.0 < self.offset < 1.0, "must lie between 0 and 1, both excluded"),
-            ("preload", -1.0 < self.preload < 1.0, "must lie between -1 and 1, both excluded"),
-            ("density", 0.0 < self.density < math.inf, "must be above 0"),
-        )
-        for name, holds, message in checks:
-            if not holds:
-                raise InputError(message, key=f"pad.{name}", value=getattr(self, name))
-        for name in ("clearance", "mass", "tilt_inertia", "pitch_inertia"):
-            value = getattr(self, name)
-            least = value is not None and (value > 0.0 or (value == 0.0 and name != "clearance"))
-            if value is not None and not (math.isfinite(value) and least):
-                raise InputError("must be above 0", key=f"pad.{name}", value=value)
+        check(self, "pad")
+        if not self.arc < FULL_TURN:
+            raise InputError("must be below 360 deg", key="pad.arc", value=self.arc)
+        if self.assembled_clearance is not None and self.preload != 0.0:
+            raise InputError(
+                "either preload or assembled_clearance, not both", key="pad.preload",
+                value=self.preload,
+            )  # fmt: skip
 
     @property
     def leading_edge(self) -> float:

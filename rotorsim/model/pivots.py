@@ -10,13 +10,16 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 from ..errors import InputError
+from .entries import Length, Number, Quantity, Stiffness, check
 
 YOUNGS_MODULUS = 207e9
 """Steel [Pa]."""
 POISSON_RATIO = 0.3
+Modulus = Annotated[float, Quantity("modulus", "207 GPa")]
+Poisson = Annotated[float, Number(least=0.0, below=0.5)]
 
 
 class Pivot(ABC):
@@ -67,12 +70,12 @@ class RigidPivot(Pivot):
 class SpringPivot(Pivot):
     """A pivot of constant stiffness [N/m]."""
 
-    stiffness: float
+    stiffness: Stiffness
 
     kind = "stiffness"
 
     def __post_init__(self) -> None:
-        _above_zero(stiffness=self.stiffness)
+        check(self, "pivot")
 
     def force(self, deflection: float) -> float:
         """Return stiffness times deflection; 0 where the pad has lifted off."""
@@ -88,7 +91,7 @@ class SpringPivot(Pivot):
         return self.stiffness
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _ContactPivot(Pivot):
     """A pivot whose contact follows Hertz; both bodies of one material unless told otherwise.
 
@@ -100,19 +103,13 @@ class _ContactPivot(Pivot):
         Of the housing alone.
     """
 
-    youngs_modulus: float = YOUNGS_MODULUS
-    poisson_ratio: float = POISSON_RATIO
-    housing_youngs_modulus: float | None = None
-    housing_poisson_ratio: float | None = None
+    youngs_modulus: Modulus = YOUNGS_MODULUS
+    poisson_ratio: Poisson = POISSON_RATIO
+    housing_youngs_modulus: Modulus | None = None
+    housing_poisson_ratio: Poisson | None = None
 
-    def _check(self) -> None:
-        _above_zero(youngs_modulus=self.youngs_modulus)
-        if self.housing_youngs_modulus is not None:
-            _above_zero(housing_youngs_modulus=self.housing_youngs_modulus)
-        for name in ("poisson_ratio", "housing_poisson_ratio"):
-            value = getattr(self, name)
-            if value is not None and not 0.0 <= value < 0.5:
-                raise InputError("must be 0 to below 0.5", key=f"pivot.{name}", value=value)
+    def __post_init__(self) -> None:
+        check(self, "pivot")
 
     @property
     def compliance(self) -> float:
@@ -124,7 +121,7 @@ class _ContactPivot(Pivot):
         return first + second
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class _PointPivot(_ContactPivot):
     """Point contact: deflection^(3/2) = 3/4 force compliance/sqrt(relative radius)."""
 
@@ -152,17 +149,13 @@ class _PointPivot(_ContactPivot):
         return 1.5 * self._factor * math.sqrt(max(deflection, 0.0))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SpherePivot(_PointPivot):
     """A sphere of `radius` [m] on a plate."""
 
-    radius: float = math.nan
+    radius: Length
 
     kind = "sphere"
-
-    def __post_init__(self) -> None:
-        _above_zero(radius=self.radius)
-        self._check()
 
     @property
     def relative_radius(self) -> float:
@@ -170,24 +163,23 @@ class SpherePivot(_PointPivot):
         return self.radius
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class SocketPivot(_PointPivot):
     """A ball in a socket [m], by Hertz: the radii must differ by more than the contact's."""
 
-    ball_radius: float = math.nan
-    socket_radius: float = math.nan
+    ball_radius: Length
+    socket_radius: Length
 
     kind = "ball_in_socket"
 
     def __post_init__(self) -> None:
-        _above_zero(ball_radius=self.ball_radius, socket_radius=self.socket_radius)
+        super().__post_init__()
         if not self.socket_radius > self.ball_radius:
             raise InputError(
                 f"must be above the ball's radius ({self.ball_radius * 1e3:g} mm)",
                 key="pivot.socket_radius",
                 value=self.socket_radius,
             )
-        self._check()
 
     @property
     def relative_radius(self) -> float:
@@ -196,7 +188,7 @@ class SocketPivot(_PointPivot):
         return self.ball_radius * self.socket_radius / difference
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class LinePivot(_ContactPivot):
     """A pad rocking on its back: line contact of two cylinders, the housing's hollow.
 
@@ -218,23 +210,20 @@ class LinePivot(_ContactPivot):
     [2/3 + ln(4 E L (D_h - D_p)/(2.15^2 F))].
     """
 
-    pad_radius: float = math.nan
-    housing_radius: float = math.nan
-    length: float = math.nan
+    pad_radius: Length
+    housing_radius: Length
+    length: Length
 
     kind = "line"
 
     def __post_init__(self) -> None:
-        _above_zero(
-            pad_radius=self.pad_radius, housing_radius=self.housing_radius, length=self.length
-        )
+        super().__post_init__()
         if not self.housing_radius > self.pad_radius:
             raise InputError(
                 f"must be above the radius of the pad's back ({self.pad_radius * 1e3:g} mm)",
                 key="pivot.housing_radius",
                 value=self.housing_radius,
             )
-        self._check()
 
     @property
     def _scale(self) -> float:
@@ -280,7 +269,7 @@ class LinePivot(_ContactPivot):
         return self.compliance / (math.pi * self.length) * logarithm
 
 
-def _above_zero(**values: float) -> None:
-    for name, value in values.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise InputError("must be above 0", key=f"pivot.{name}", value=value)
+PIVOTS: dict[str, type[Pivot]] = {
+    kind.kind: kind for kind in (RigidPivot, SpringPivot, LinePivot, SpherePivot, SocketPivot)
+}
+"""Every kind of pivot, by its name in a file."""

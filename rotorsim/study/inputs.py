@@ -13,7 +13,7 @@ from ..rows import RPM, ZERO_CELSIUS, Row, number
 
 if TYPE_CHECKING:
     from ..files.scenario import Scenario
-    from ..model import Bearing
+    from ..model import Bearing, Pad
 
 _Rows = list[Row]
 
@@ -56,7 +56,8 @@ def _bearing(scenario: Scenario) -> _Rows:
     ]
     if bearing.bush_outer_radius is not None:
         rows.append(Row("bush outer radius", _millimetres(bearing.bush_outer_radius)))
-    for place, groove in enumerate(bearing.grooves, start=1):
+    rows += [_pad(place, pad, bearing) for place, pad in enumerate(bearing.pads, start=1)]
+    for place, groove in enumerate(() if bearing.pads else bearing.grooves, start=1):
         length = bearing.length if groove.length is None else groove.length
         rows.append(
             Row(
@@ -82,6 +83,15 @@ def _bearing(scenario: Scenario) -> _Rows:
     if bearing.roughness:
         rows.append(Row("roughness", _micrometres(bearing.roughness)))
     return rows
+
+
+def _pad(place: int, pad: Pad, bearing: Bearing) -> Row:
+    return Row(
+        f"pad {place}",
+        f"pivot at {_degrees(pad.pivot_angle)} ({pad.pivot.kind}), {_degrees(pad.arc)} long, "
+        f"offset {number(pad.offset)}, preload {number(bearing.preload_of(pad))}, "
+        f"{_millimetres(pad.thickness)} thick",
+    )
 
 
 def _per_mille(bearing: Bearing, scenario: Scenario) -> list[str]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..machine.branches import Modes
 from ..machine.machine import Machine
 from ..machine.modes import eigenvalues_over_speed, known_speeds, modes
-from ..machine.support import TableSupport
+from ..machine.support import TableSupport, table_support
 from ..machine.thresholds import ThresholdSpeed, threshold_speeds
 from ..rotor import Rotor
 from ..rows import number
@@ -58,6 +58,11 @@ class StabilityCurve:
         Whether an eigenvalue's real part is below its own accuracy: neither stable nor unstable.
     threshold_speeds : tuple of float
         Speeds at which that rotor turns from stable to unstable or back [rad/s].
+    growth_rate_synchronous : (n,) array or None
+        What the coefficients reduced at the shaft's frequency would make of the growth rate [1/s];
+        None without tilting pads.
+    threshold_speeds_synchronous : tuple of float
+        And of the threshold speeds [rad/s].
     """
 
     choices: dict[str, Any]
@@ -71,6 +76,8 @@ class StabilityCurve:
     eigenvalues: NDArray[np.complex128] | None = None
     undamped: NDArray[np.bool_] | None = None
     threshold_speeds: tuple[float, ...] = ()
+    growth_rate_synchronous: Array | None = None
+    threshold_speeds_synchronous: tuple[float, ...] = ()
 
     @property
     def growth_rate(self) -> Array | None:
@@ -129,25 +136,44 @@ def _curve(
         load=load,
         radial_clearance=choices["radial_clearance"],
     )
+    verdict = {
+        name: getattr(found, name)
+        for name in (
+            "stability", "critical_mass", "critical_mass_dimensionless", "whirl_frequency_ratio",
+        )
+    }  # fmt: skip
+    has_pads = "full_stiffness" in table.dataset
+    if has_pads:  # those of rotor and pads together
+        verdict = {name: table.dataset[name].values[index] for name in verdict}
     eigenvalues, undamped, thresholds = None, None, ()
+    synchronous, synchronous_thresholds = None, ()
     if rotor is not None and usable.any():
-        machine = Machine.on_identical(rotor, TableSupport(table.interpolator(**choices)))
+        machine = Machine.on_identical(rotor, table_support(table, **choices))
         eigenvalues, undamped = _eigenvalues(machine, table.speeds)
-        if known_speeds(machine).size > 1:
-            thresholds = tuple(one.speed for one in threshold_speeds(machine))
+        thresholds = _thresholds(machine)
+        if has_pads:
+            reduced = TableSupport(table.interpolator(**choices))
+            machine = Machine.on_identical(rotor, reduced)
+            synchronous = _eigenvalues(machine, table.speeds)[0][:, 0].real
+            synchronous_thresholds = _thresholds(machine)
     return StabilityCurve(
         choices=choices,
         speed=table.speeds,
-        stability=found.stability,
-        critical_mass=found.critical_mass,
-        critical_mass_dimensionless=found.critical_mass_dimensionless,
-        whirl_frequency_ratio=found.whirl_frequency_ratio,
+        **verdict,
         rotor=_rotor_words(rotor),
         mass=None if rotor is None else rotor.rigid_mass,
         eigenvalues=eigenvalues,
         undamped=undamped,
         threshold_speeds=thresholds,
+        growth_rate_synchronous=synchronous,
+        threshold_speeds_synchronous=synchronous_thresholds,
     )
+
+
+def _thresholds(machine: Machine) -> tuple[float, ...]:
+    if known_speeds(machine).size < 2:
+        return ()
+    return tuple(one.speed for one in threshold_speeds(machine))
 
 
 def _eigenvalues(
@@ -239,7 +265,7 @@ def campbell_curves(table: CoefficientTable, rotor: Rotor, count: int | None = 8
 def _campbell(
     table: CoefficientTable, rotor: Rotor, count: int | None, choices: dict[str, Any]
 ) -> Campbell:
-    machine = Machine.on_identical(rotor, TableSupport(table.interpolator()))
+    machine = Machine.on_identical(rotor, table_support(table))
     every = modes(machine)
     return Campbell(
         choices=choices,

@@ -13,11 +13,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import InputError
-from ...model import BushModel, Cavitation, Inception, Lubricant, ThermalModel, ThermalSettings
+from ...model import (
+    BushModel,
+    Cavitation,
+    Inception,
+    InletModel,
+    Lubricant,
+    ThermalModel,
+    ThermalSettings,
+)
 from ...model.orbit import OrbitForce, OrbitKind, OrbitSettings, SpeedRamp
+from ...model.pad_bearing import CARRY_OVER, Feed
 from ...model.tolerances import NORMAL_REACH, Distribution
 from ...rotor import Rotor
-from .geometry import check_arcs, check_eccentricity, check_grooves, check_tilt
+from .geometry import (
+    check_arcs,
+    check_below_one,
+    check_eccentricity,
+    check_grooves,
+    check_pads,
+    check_tilt,
+)
 
 if TYPE_CHECKING:
     from .scenario import Scenario
@@ -38,6 +54,7 @@ def settled(scenario: Scenario, tables: Tables) -> Scenario:
     tables : dict
         As the file has them: which entries are written.
     """
+    scenario = settled_pads(scenario, tables)
     check_bearings(scenario)
     thermal = settled_thermal(scenario, tables)
     if scenario.tolerances is not None:
@@ -49,6 +66,24 @@ def settled(scenario: Scenario, tables: Tables) -> Scenario:
     for _ in settled_scenario.cases():  # each checks itself
         pass
     return settled_scenario
+
+
+def settled_pads(scenario: Scenario, tables: Tables) -> Scenario:
+    """Turn pads that stand by the load to it; say how much hot oil their feed carries over."""
+    bearing, thermal = scenario.bearing, scenario.thermal
+    if not bearing.pads:
+        return scenario
+    table, heat = tables["bearing"], tables.get("thermal", {})
+    shared, own = table.get("pads", {}), table.get("pad", [])
+    if "pivot_angle" not in shared and not any("pivot_angle" in pad for pad in own):
+        bearing = bearing.turned(scenario.load_direction)
+    if "inlet" not in heat:
+        thermal = replace(thermal, inlet=InletModel.MIXING)
+    if "hot_oil_carry_over" not in heat and thermal.inlet is InletModel.MIXING:
+        thermal = replace(
+            thermal, hot_oil_carry_over=CARRY_OVER[Feed(shared.get("feed", "flooded"))]
+        )
+    return replace(scenario, bearing=bearing, thermal=thermal)
 
 
 def check_bearings(scenario: Scenario) -> None:
@@ -65,7 +100,13 @@ def check_bearings(scenario: Scenario) -> None:
             raise InputError(error.message, key=key if of_clearance else error.key) from None
         if bearing.roughness >= clearance:
             raise InputError("must be below the radial clearance", key="bearing.roughness")
+        if bearing.pads:
+            check_pads(bearing, eccentricity)
+            continue
+        check_below_one(eccentricity)
         check_tilt(bearing, eccentricity)
+    if scenario.bearing.pads:
+        return
     check_grooves(scenario.bearing, scenario.film.mesh)
     check_arcs(scenario.bearing)
     check_eccentricity(scenario.bearing, eccentricity)
@@ -96,7 +137,7 @@ def settled_thermal(scenario: Scenario, tables: Tables) -> ThermalSettings:
     elif ambient is None:
         thermal = replace(thermal, ambient_temperature=thermal.supply_temperature)
     if heated and thermal.bush is BushModel.CONDUCTION:
-        for table, name, example in _CONDUCTION:
+        for table, name, example in _CONDUCTION[1 if scenario.bearing.pads else 0 :]:
             reason = 'thermal.bush = "conduction" needs it'
             _need(tables.get(table, {}), table, name, example, reason)
     _check_viscosities(scenario, thermal, ambient is not None)

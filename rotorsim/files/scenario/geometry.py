@@ -10,6 +10,7 @@ import numpy as np
 from ...errors import InputError
 from ...model import Bearing, MeshSize
 from ...model.bearing import FULL_TURN
+from ...model.pad_bearing import farthest
 
 TOLERANCE = 1e-9
 """Angle below which two edges are taken for one [rad]."""
@@ -129,6 +130,28 @@ def reach(bearing: Bearing) -> float:
     towards = np.cos(theta[:, None] - theta)  # direction of the journal, angle around the bore
     room = np.where(towards > 0.0, bore / np.where(towards > 0.0, towards, 1.0), np.inf)
     return float(room.min(axis=1).max())
+
+
+def check_below_one(eccentricity_ratio: float | None) -> None:
+    """Refuse an eccentricity ratio of 1 and above, where a journal touches any bore."""
+    if eccentricity_ratio is not None and not eccentricity_ratio < 1.0:
+        raise InputError(
+            "must be below 1 (it lies between 0 and 1, for example 0.5)",
+            key="operating.eccentricity_ratio",
+        )
+
+
+def check_pads(bearing: Bearing, eccentricity_ratio: float | None) -> None:
+    """Refuse an eccentricity ratio at which the journal touches a pad wherever it stands."""
+    if eccentricity_ratio is None:
+        return
+    limit = farthest(bearing) / bearing.radial_clearance
+    if eccentricity_ratio >= limit:
+        raise InputError(
+            "the journal touches a pad in every direction: with these pads it must be below "
+            f"{limit:.4g} (it counts in machined clearances)",
+            key="operating.eccentricity_ratio",
+        )
 
 
 def check_eccentricity(bearing: Bearing, eccentricity_ratio: float | None) -> None:

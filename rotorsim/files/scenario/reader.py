@@ -266,7 +266,7 @@ class Reader:
         said = _SAID_OTHERWISE.get(".".join(names), {}).get(key)
         if said is not None:
             return f"is not a key of {where}; {said} (known: {', '.join(known)})"
-        elsewhere = [table for table, keys in tables.items() if table and key in keys]
+        elsewhere = sorted((t for t, keys in tables.items() if t and key in keys), key=len)
         advice = (
             f"; it belongs into [{'.'.join(elsewhere[0])}]" if elsewhere else nearest(key, known)
         )

@@ -19,6 +19,7 @@ from ...model.entries import NOT_IN_FILES, Leaf, Made
 from ...model.lubricant import oil
 from ...model.operating import Operating, StabilitySettings
 from ...model.orbit import OrbitSettings
+from ...model.pad_bearing import tilting_pad_bearing
 from ...model.tolerances import ToleranceSettings
 from ...rotor import Rotor
 from ...shipped import shipped_scenarios
@@ -29,6 +30,8 @@ from .document import parse_toml, read_text
 from .reader import Reader
 
 MAX_TITLE = 500
+_BEARINGS = Made({"bore": Bearing, "tilting_pad": tilting_pad_bearing})
+"""What ``[bearing]`` makes, by its ``kind``."""
 _ROTORS = Made({"rigid": Rotor.rigid, "jeffcott": Rotor.jeffcott})
 """What ``[rotor]`` makes, by its ``kind``."""
 
@@ -77,7 +80,7 @@ class Scenario:
         The TOML text, lines ended by a line feed.
     """
 
-    bearing: Bearing
+    bearing: Annotated[Bearing, _BEARINGS]
     lubricant: Annotated[Lubricant, Made(oil)]
     operating: Operating
     title: Annotated[str, TitleEntry()] = ""
