@@ -109,7 +109,7 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
         stability_document(results)
         | {
             "supports": supports_document(last),
-            "unbalance_response": response_document(study),
+            "unbalance_response": response_document(study, last.description.operating.continuous),
             "lateral": lateral_document(study),
             "files": {"figures": files},
         }

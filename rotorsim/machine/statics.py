@@ -23,8 +23,9 @@ Law = Callable[[Array], tuple[Array, Array]]
 GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s^2] (ISO 80000-3)."""
 _MAX_STEPS = 60
-_TOLERANCE = 1e-8
-"""Of the reactions, relative to the load of the whole rotor."""
+_TOLERANCE = 1e-6
+"""Of the reactions, relative to the load of the whole rotor; a heated film's force is known to some
+1e-7 of its load."""
 
 
 @dataclass(frozen=True, eq=False)

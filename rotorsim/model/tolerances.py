@@ -113,6 +113,7 @@ class SpreadEntry(Leaf):
     name: str
 
     def read(self, value: object) -> Spread:
+        """Return the spread."""
         return parse_spread(value, self.name)
 
 

@@ -10,8 +10,8 @@ import numpy as np
 
 from ..errors import InputError
 from ..machine.destabilising import DecrementCurve, decrement_curve
-from ..machine.lateral import Check, lateral_checks
-from ..machine.peaks import ProbeResponse, node_at, probe_responses, response_speeds
+from ..machine.lateral import Check, lateral_checks, required_margin, separation_margin
+from ..machine.peaks import Peak, ProbeResponse, node_at, probe_responses, response_speeds
 from ..machine.residual import unbalance_cases
 from ..machine.response import unbalance_response
 from .machine import MachineResult
@@ -110,8 +110,17 @@ def _curves(result: MachineResult, speed: float, notes: list[str]) -> list[Decre
         return []
 
 
-def response_document(study: LateralStudy) -> list[dict[str, Any]]:
-    """Response at the probes as plain data (SI)."""
+def response_document(
+    study: LateralStudy, continuous: tuple[float, float] | None
+) -> list[dict[str, Any]]:
+    """Response at the probes as plain data (SI).
+
+    Parameters
+    ----------
+    study : LateralStudy
+    continuous : (float, float) or None
+        Range of continuous speeds that the margins of the peaks are measured from [rad/s].
+    """
     return [
         {
             "probe": one.name,
@@ -126,6 +135,7 @@ def response_document(study: LateralStudy) -> list[dict[str, Any]]:
                     "speed": peak.speed,
                     "amplitude": peak.amplitude,
                     "amplification_factor": peak.amplification_factor,
+                    **_margins(peak, continuous),
                     "note": peak.note,
                 }
                 for peak in one.peaks
@@ -133,6 +143,16 @@ def response_document(study: LateralStudy) -> list[dict[str, Any]]:
         }
         for one in study.responses
     ]
+
+
+def _margins(peak: Peak, continuous: tuple[float, float] | None) -> dict[str, float | None]:
+    """Actual and required separation margin of a peak, as shares of the range's nearer end."""
+    factor = peak.amplification_factor
+    if continuous is None:
+        return {"separation_margin": None, "required_margin": None}
+    needed = None if factor is None else required_margin(factor, peak.speed < continuous[0])
+    actual = separation_margin(peak.speed, continuous)
+    return {"separation_margin": actual, "required_margin": needed}
 
 
 def lateral_document(study: LateralStudy) -> Mapping[str, Any]:

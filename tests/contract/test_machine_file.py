@@ -216,6 +216,8 @@ def test_run_tells_supports_response_and_checks(here: CommandLine, tmp_path):
     assert probe["probe"] == "DE"
     assert len(probe["amplitude"]) == len(probe["speeds"])
     assert max(probe["amplitude"]) > 0.0
+    for peak in probe["peaks"]:
+        assert {"amplification_factor", "separation_margin", "required_margin"} <= set(peak)
     assert [one["name"] for one in found["supports"]] == ["support 1", "right"]
     assert found["lateral"]["notes"]
     drawn = {name.rpartition("/")[2] for name in found["files"]["figures"]}
