@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..study.control import ControlStudy
 
 
-class DesignChoice(StrEnum):
+class _DesignChoice(StrEnum):
     """Kinds of feedback."""
 
     LQR = "lqr"
@@ -34,8 +34,8 @@ def control(
     clearance: ClearanceOption = None,
     model: ModelOption = None,
     design: Annotated[
-        DesignChoice, typer.Option("--design", help="Full state feedback, or PD for each axis.")
-    ] = DesignChoice.LQR,
+        _DesignChoice, typer.Option("--design", help="Full state feedback, or PD for each axis.")
+    ] = _DesignChoice.LQR,
     max_force: Annotated[
         str | None,
         typer.Option(
@@ -78,7 +78,7 @@ def control(
     )
     at = _quantity(speed, "speed", "--speed", "15000 rpm") or float(loaded.speeds[-1])
     study = study_control(_case(loaded, clearance, model), at, _mass(loaded, mass), wishes)
-    document = study_document(study)
+    document = _study_document(study)
     if folder is not None:
         from ..show.job import save_figures
         from ..show.stability_figures import control_figures
@@ -86,7 +86,7 @@ def control(
         document["files"] = save_figures(control_figures(study, loaded.title), folder)
     output.document(document)
     if not (output.json or output.quiet):
-        output.show(*study_tables(study))
+        output.show(*_study_tables(study))
         output.show(*map(str, document.get("files", [])))
     if study.holds:
         return DONE
@@ -121,7 +121,7 @@ def _case(scenario: Scenario, clearance: str | None, model: str | None) -> Case:
     return scenario.case(wanted, chosen)
 
 
-def study_document(study: ControlStudy) -> dict[str, Any]:
+def _study_document(study: ControlStudy) -> dict[str, Any]:
     """A control study for JSON."""
     import dataclasses
 
@@ -156,12 +156,12 @@ def study_document(study: ControlStudy) -> dict[str, Any]:
     }
 
 
-def study_tables(study: ControlStudy) -> list[Any]:
+def _study_tables(study: ControlStudy) -> list[Any]:
     """A control study for people."""
     from ..rows import RPM, number
     from .tables import grid
 
-    said = study_document(study)
+    said = _study_document(study)
     title = f"{study.speed * RPM:.0f} rpm, {number(study.mass)} kg per bearing"
     table = grid(title, "", "growth 1/s", "run in time", "max eps")
     for name in ("passive", "controlled"):

@@ -16,7 +16,7 @@ from .options import BearingOption, TableArgument
 from .output import DONE, Output, as_typed
 
 
-class Profile(StrEnum):
+class _Profile(StrEnum):
     """Bores that `new` can write."""
 
     PLAIN = "plain"
@@ -86,7 +86,7 @@ def new(
     output: Output,
     name: Annotated[str, typer.Argument(help="Name of the scenario file.", show_default=False)],
     profile: Annotated[
-        Profile | None,
+        _Profile | None,
         typer.Option("--profile", "-p", help="Shape of the bore.", show_default="plain"),
     ] = None,
     load: Annotated[
@@ -133,7 +133,7 @@ def new(
         raise InputError("exists; choose another name, or replace it with --force", source=path)
     check_file(path)
     if example is None:
-        text = _new_text(path.stem, profile or Profile.PLAIN, load, eccentricity, iso_vg)
+        text = _new_text(path.stem, profile or _Profile.PLAIN, load, eccentricity, iso_vg)
     elif (profile, load, eccentricity, iso_vg) == (None, None, None, None):
         text = _shipped_text(example)
     else:
@@ -156,7 +156,11 @@ def new(
 
 
 def _new_text(
-    title: str, profile: Profile, load: str | None, eccentricity: float | None, iso_vg: float | None
+    title: str,
+    profile: _Profile,
+    load: str | None,
+    eccentricity: float | None,
+    iso_vg: float | None,
 ) -> str:
     from .template import scenario_text
 

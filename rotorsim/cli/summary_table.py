@@ -37,7 +37,7 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
         if lines:
             yield lines
     if curves:
-        yield threshold_table(curves)
+        yield _threshold_table(curves)
     if said["orbits"]:
         yield orbit_table(said["orbits"])
         lines = "\n".join(late_whirl(said["orbits"], curves))
@@ -113,7 +113,7 @@ def _percent(cold: float | None, hot: float | None) -> str:
     return f"{change:+.1f} %" if change else "0 %"
 
 
-def threshold_table(curves: Sequence[StabilityCurve]) -> Table:
+def _threshold_table(curves: Sequence[StabilityCurve]) -> Table:
     """Whether the rotor is stable at the highest speed, and where that changes."""
     rotor = curves[0].rotor
     title = "Stability" + (f", {rotor}" if rotor else "")

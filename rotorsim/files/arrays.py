@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..file_kinds import read_bytes
 
-LARGEST = 1e30
+_LARGEST = 1e30
 """Magnitude of a number in SI; beyond, products of two would overflow before long."""
 _MAX_BYTES = 200_000_000
 _MAX_UNPACKED = 500_000_000
@@ -52,8 +52,8 @@ def read_arrays(source: Path) -> dict[str, NDArray[Any]]:
         for name, array in found.items():
             if array.dtype.kind not in "biufc":
                 raise _Unsuited(f"{name} holds no numbers")
-            if array.dtype.kind in "fc" and bool(np.any(np.abs(array) > LARGEST)):
-                raise _Unsuited(f"{name} holds numbers beyond {LARGEST:g}")
+            if array.dtype.kind in "fc" and bool(np.any(np.abs(array) > _LARGEST)):
+                raise _Unsuited(f"{name} holds numbers beyond {_LARGEST:g}")
     except _Unsuited as reason:
         raise InputError(f"cannot be read: {reason}", source=source) from None
     except NotImplementedError:

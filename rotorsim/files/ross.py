@@ -33,7 +33,7 @@ from .curves import Curve
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-WEIGHT = -0.5 * math.pi
+_WEIGHT = -0.5 * math.pi
 """Direction of the weight in the frame of ROSS [rad]: along -y."""
 
 _WEIGHT_FRAME = (
@@ -47,7 +47,7 @@ _WEIGHT_FRAME = (
 )
 
 
-def frame_of_ross(load_direction: float = WEIGHT) -> tuple[str, ...]:
+def _frame_of_ross(load_direction: float = _WEIGHT) -> tuple[str, ...]:
     """Lines that say what coefficients in the frame of ROSS mean.
 
     Parameters
@@ -55,8 +55,8 @@ def frame_of_ross(load_direction: float = WEIGHT) -> tuple[str, ...]:
     load_direction : float
         Where the static load points [rad], from x of ROSS towards its y.
     """
-    degrees = in_degrees(load_direction)
-    if degrees == in_degrees(WEIGHT):
+    degrees = _in_degrees(load_direction)
+    if degrees == _in_degrees(_WEIGHT):
         return _WEIGHT_FRAME
     return (
         "Frame of ROSS: z along the shaft, the shaft turning from x to y, y up; the static load",
@@ -73,7 +73,7 @@ def frame_of_ross(load_direction: float = WEIGHT) -> tuple[str, ...]:
     )
 
 
-def in_degrees(load_direction: float) -> float:
+def _in_degrees(load_direction: float) -> float:
     """Direction in degrees, from -180 to 180.
 
     Rounded to 1e-10, so that what a file says of it is what its numbers were turned by.
@@ -93,7 +93,7 @@ def in_degrees(load_direction: float) -> float:
     return round(math.remainder(math.degrees(load_direction), 360.0), 10)
 
 
-def to_ross(matrices: NDArray[np.float64], load_direction: float = WEIGHT) -> NDArray[np.float64]:
+def to_ross(matrices: NDArray[np.float64], load_direction: float = _WEIGHT) -> NDArray[np.float64]:
     """Turn (..., 2, 2) matrices from the load frame to the frame of ROSS.
 
     Parameters
@@ -112,7 +112,9 @@ def to_ross(matrices: NDArray[np.float64], load_direction: float = WEIGHT) -> ND
     return turn @ matrices @ turn.T
 
 
-def from_ross(matrices: NDArray[np.float64], load_direction: float = WEIGHT) -> NDArray[np.float64]:
+def from_ross(
+    matrices: NDArray[np.float64], load_direction: float = _WEIGHT
+) -> NDArray[np.float64]:
     """Inverse of `to_ross`."""
     turn = _turn(load_direction)
     return turn.T @ matrices @ turn
@@ -120,7 +122,7 @@ def from_ross(matrices: NDArray[np.float64], load_direction: float = WEIGHT) -> 
 
 def _turn(load_direction: float) -> NDArray[np.float64]:
     """(2, 2): components in the frame of ROSS from those in the load frame."""
-    degrees = in_degrees(load_direction)
+    degrees = _in_degrees(load_direction)
     cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     if degrees % 90.0 == 0.0:  # numbers only change places and signs, to the last digit
         cosine, sine = round(cosine), round(sine)
@@ -147,7 +149,7 @@ _AXES = {
 """Key of the shaft's speed by version of ROSS, and what the file says of it."""
 
 
-def write(curve: Curve, path: Path, load_direction: float = WEIGHT, *, version: int = 3) -> Path:
+def write(curve: Curve, path: Path, load_direction: float = _WEIGHT, *, version: int = 3) -> Path:
     """Write one curve as a file for ``ross.BearingElement.load``.
 
     Parameters
@@ -165,7 +167,7 @@ def write(curve: Curve, path: Path, load_direction: float = WEIGHT, *, version: 
         f'Read it with: bearing = ross.BearingElement.load("{path.name}"), then set bearing.n',
         "(the node; the file says 0), and another bearing.tag for each use.",
         *(said if not curve.constant else ()),
-        *frame_of_ross(load_direction),
+        *_frame_of_ross(load_direction),
     ]
     stem = path.stem.removesuffix(".ross").removesuffix(".ross2")
     tag = "".join(letter for letter in stem if letter.isprintable())
@@ -184,8 +186,8 @@ def write(curve: Curve, path: Path, load_direction: float = WEIGHT, *, version: 
         f"{name} = [{', '.join(repr(float(value) + 0.0) for value in column)}]"
         for name, column in columns.items()
     ]
-    degrees = in_degrees(load_direction)
-    if degrees != in_degrees(WEIGHT):  # after the bearing: ROSS loads the first table
+    degrees = _in_degrees(load_direction)
+    if degrees != _in_degrees(_WEIGHT):  # after the bearing: ROSS loads the first table
         lines += ["", f"[{_OWN}]", f'{_DIRECTION} = "{degrees:.13g} deg"']
     write_text(path, "\n".join(lines) + "\n")
     return path
@@ -283,7 +285,7 @@ def _numbers(entry: dict[str, Any]) -> dict[str, Any]:
 def _direction(entries: dict[str, Any], given: float | None, source: Path) -> float:
     """Direction of the static load [rad]: the file's, or `given`, or that of the weight."""
     if _OWN not in entries:
-        return WEIGHT if given is None else given
+        return _WEIGHT if given is None else given
     own, key = entries[_OWN], f"{_OWN}.{_DIRECTION}"
     if not isinstance(own, dict) or set(own) != {_DIRECTION}:
         raise TableError(f"must hold {_DIRECTION} and nothing else", source=source, key=_OWN)
@@ -291,8 +293,8 @@ def _direction(entries: dict[str, Any], given: float | None, source: Path) -> fl
         stated = parse_quantity(own[_DIRECTION], "angle")
     except InputError as error:
         raise TableError(error.message, source=source, key=key, value=error.value) from None
-    if given is not None and in_degrees(given) != in_degrees(stated):
-        message = f"another direction was given ({in_degrees(given):.13g} deg); leave it away"
+    if given is not None and _in_degrees(given) != _in_degrees(stated):
+        message = f"another direction was given ({_in_degrees(given):.13g} deg); leave it away"
         raise TableError(message, source=source, key=key, value=own[_DIRECTION])
     return stated
 

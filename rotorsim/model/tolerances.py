@@ -107,7 +107,7 @@ def _from_table(table: dict[object, object], name: str) -> Spread:
 
 
 @dataclass(frozen=True)
-class SpreadEntry(Leaf):
+class _SpreadEntry(Leaf):
     """A spread, by the rules of the input `name`."""
 
     name: str
@@ -133,10 +133,10 @@ class ToleranceSettings:
         The same seed draws the same samples.
     """
 
-    radial_clearance: Annotated[Spread | None, SpreadEntry("radial_clearance")] = None
-    viscosity: Annotated[Spread | None, SpreadEntry("viscosity")] = None
-    load: Annotated[Spread | None, SpreadEntry("load")] = None
-    supply_temperature: Annotated[Spread | None, SpreadEntry("supply_temperature")] = None
+    radial_clearance: Annotated[Spread | None, _SpreadEntry("radial_clearance")] = None
+    viscosity: Annotated[Spread | None, _SpreadEntry("viscosity")] = None
+    load: Annotated[Spread | None, _SpreadEntry("load")] = None
+    supply_temperature: Annotated[Spread | None, _SpreadEntry("supply_temperature")] = None
     distribution: Distribution = Distribution.UNIFORM
     samples: Annotated[int, Number(least=8, most=MAX_COUNT)] = _DEFAULT_SAMPLES
     seed: Annotated[int, Number(least=0, most=2**31)] = 0

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _SURROUNDING_SPEEDS = 12
 """Of the table that is computed for an orbit's recording alone."""
-MICRO = 1e6
+_MICRO = 1e6
 
 
 def write_results(
@@ -82,7 +82,7 @@ def figures(results: Results) -> Iterator[tuple[str, Figure]]:
         figure = plots.stability_map(
             plane, marks=_marks(results, clearance), title=f"{title}\n{shown}"
         )
-        micro = f"{clearance * MICRO:.4g}um"
+        micro = f"{clearance * _MICRO:.4g}um"
         yield f"stability_map_{micro}" if len(planes) > 1 else "stability_map", figure
     if results.modes:
         yield "eigenvalues", plots.eigenvalue_plot(results.modes, title)
@@ -238,7 +238,7 @@ def _markdown_summary(results: Results) -> str:
     """The summary of the main job as Markdown, for the recording."""
     facts = summary(results, {})
     counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
-    lines = [*conclusion(facts), *([f"Film points: {counted}.", ""] if counted else [])]
+    lines = [*_conclusion(facts), *([f"Film points: {counted}.", ""] if counted else [])]
     for text in late_whirl(facts["orbits"], results.curves):
         lines += [f"{text[0].upper()}{text[1:]}.", ""]
     for row in facts["heating"]:
@@ -257,7 +257,7 @@ def _markdown_summary(results: Results) -> str:
     return "\n".join([*lines, _orbit_notes(results.orbits, results.orbit_rows)])
 
 
-def conclusion(facts: Mapping[str, Any]) -> list[str]:
+def _conclusion(facts: Mapping[str, Any]) -> list[str]:
     """Say what the orbits at constant speed show of heating; nothing without both models."""
     rates = {
         row["thermal_model"]: row
@@ -311,11 +311,11 @@ def _seen(row: Mapping[str, Any]) -> list[str]:
         whirl = row["whirl"]
         facts.append(
             f"{whirl['direction']} whirl at {whirl['order']:.4f} of the shaft's speed, ellipse"
-            f" {whirl['semi_major'] * MICRO:.4g} x {whirl['semi_minor'] * MICRO:.4g} µm"
+            f" {whirl['semi_major'] * _MICRO:.4g} x {whirl['semi_minor'] * _MICRO:.4g} µm"
         )
     if row["whirl_range"] is not None:
         facts.append(whirl_range_text(row["whirl_range"]))
     facts.append(
-        f"thinnest film {row['min_film'] * MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
+        f"thinnest film {row['min_film'] * _MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
     )
     return facts

@@ -38,14 +38,14 @@ from .geometry import (
 if TYPE_CHECKING:
     from .scenario import Scenario
 
-Tables = Mapping[str, Any]
-SENSIBLE_VISCOSITY = (1e-7, 1e5)
+_Tables = Mapping[str, Any]
+_SENSIBLE_VISCOSITY = (1e-7, 1e5)
 """Of the oil at the temperatures given [Pa s]."""
-DEFAULT_REVOLUTIONS = 60
+_DEFAULT_REVOLUTIONS = 60
 _RPM = 30.0 / math.pi
 
 
-def settled(scenario: Scenario, tables: Tables) -> Scenario:
+def settled(scenario: Scenario, tables: _Tables) -> Scenario:
     """Return the scenario with what its entries leave open, or refuse what does not go together.
 
     Parameters
@@ -54,21 +54,21 @@ def settled(scenario: Scenario, tables: Tables) -> Scenario:
     tables : dict
         As the file has them: which entries are written.
     """
-    scenario = settled_pads(scenario, tables)
-    check_bearings(scenario)
-    thermal = settled_thermal(scenario, tables)
+    scenario = _settled_pads(scenario, tables)
+    _check_bearings(scenario)
+    thermal = _settled_thermal(scenario, tables)
     if scenario.tolerances is not None:
-        check_tolerances(scenario)
+        _check_tolerances(scenario)
     orbit = scenario.orbit
     if orbit is not None:
-        orbit = settled_orbit(orbit, scenario, tables["orbit"])
+        orbit = _settled_orbit(orbit, scenario, tables["orbit"])
     settled_scenario = replace(scenario, thermal=thermal, orbit=orbit)
     for _ in settled_scenario.cases():  # each checks itself
         pass
     return settled_scenario
 
 
-def settled_pads(scenario: Scenario, tables: Tables) -> Scenario:
+def _settled_pads(scenario: Scenario, tables: _Tables) -> Scenario:
     """Turn pads that stand by the load to it; say how much hot oil their feed carries over."""
     bearing, thermal = scenario.bearing, scenario.thermal
     if not bearing.pads:
@@ -86,7 +86,7 @@ def settled_pads(scenario: Scenario, tables: Tables) -> Scenario:
     return replace(scenario, bearing=bearing, thermal=thermal)
 
 
-def check_bearings(scenario: Scenario) -> None:
+def _check_bearings(scenario: Scenario) -> None:
     """Check the bearing with each of its clearances."""
     clearances, eccentricity = scenario.radial_clearances, scenario.operating.eccentricity_ratio
     for index, clearance in enumerate(clearances):
@@ -112,7 +112,7 @@ def check_bearings(scenario: Scenario) -> None:
     check_eccentricity(scenario.bearing, eccentricity)
 
 
-def settled_thermal(scenario: Scenario, tables: Tables) -> ThermalSettings:
+def _settled_thermal(scenario: Scenario, tables: _Tables) -> ThermalSettings:
     """Return the thermal settings with the temperatures that are left out."""
     given, oil, thermal = tables.get("thermal", {}), scenario.lubricant, scenario.thermal
     if len(set(scenario.thermal_models)) != len(scenario.thermal_models):
@@ -156,7 +156,7 @@ _CONDUCTION = (
 )
 
 
-def _need(given: Tables, table: str, name: str, example: str, reason: str) -> None:
+def _need(given: _Tables, table: str, name: str, example: str, reason: str) -> None:
     if name not in given:
         raise InputError(
             f'is missing: {reason}; write for example {name} = "{example}"', key=f"{table}.{name}"
@@ -177,7 +177,7 @@ def _check_viscosities(scenario: Scenario, thermal: ThermalSettings, has_ambient
 
 
 def _check_viscosity(oil: Lubricant, temperature: float, key: str) -> None:
-    low, high = SENSIBLE_VISCOSITY
+    low, high = _SENSIBLE_VISCOSITY
     with np.errstate(all="ignore"):
         viscosity = float(oil.viscosity(temperature))
     if not low <= viscosity <= high:
@@ -188,7 +188,7 @@ def _check_viscosity(oil: Lubricant, temperature: float, key: str) -> None:
         )
 
 
-def check_tolerances(scenario: Scenario) -> None:
+def _check_tolerances(scenario: Scenario) -> None:
     """Refuse spreads that leave nothing of the value they are about, or less."""
     settings, load = scenario.tolerances, scenario.operating.load
     assert settings is not None
@@ -219,7 +219,7 @@ def check_tolerances(scenario: Scenario) -> None:
         )
 
 
-def settled_orbit(orbit: OrbitSettings, scenario: Scenario, given: Tables) -> OrbitSettings:
+def _settled_orbit(orbit: OrbitSettings, scenario: Scenario, given: _Tables) -> OrbitSettings:
     """Return the orbit with the clearance, duration, kind and actuator that are left out."""
     rotor = scenario.rotor
     if rotor is None:
@@ -235,7 +235,7 @@ def settled_orbit(orbit: OrbitSettings, scenario: Scenario, given: Tables) -> Or
     )
     _check_start(orbit, scenario.operating.eccentricity_ratio)
     if not orbit.is_ramped and orbit.revolutions is None:
-        orbit = replace(orbit, revolutions=DEFAULT_REVOLUTIONS)
+        orbit = replace(orbit, revolutions=_DEFAULT_REVOLUTIONS)
     _check_nodes(orbit, rotor)
     kinds = orbit.kinds(float(np.abs(rotor.unbalance).max()))
     if "kind" not in given:

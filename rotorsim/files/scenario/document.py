@@ -12,8 +12,8 @@ from ...file_kinds import HEAD, FileKind, recognise, sentence
 from ...shipped import shipped_scenarios
 from .toml_advice import advice
 
-MAX_BYTES = 1_000_000
-MAX_NESTING = 50
+_MAX_BYTES = 1_000_000
+_MAX_NESTING = 50
 
 
 def read_text(path: str | Path) -> str:
@@ -33,7 +33,7 @@ def read_text(path: str | Path) -> str:
         if not path.is_file():
             raise ScenarioError(f"no such file{_similar(path)}", source=path)
         with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
+            data = file.read(_MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         if isinstance(error, ScenarioError):
             raise
@@ -41,8 +41,8 @@ def read_text(path: str | Path) -> str:
     kind = recognise(data[:HEAD], path.suffix.lower())
     if kind not in (None, FileKind.SCENARIO):
         raise ScenarioError(f"{sentence(kind)}; here a scenario is needed", source=path)
-    if len(data) > MAX_BYTES:
-        raise ScenarioError(f"is larger than {MAX_BYTES} bytes: no scenario file", source=path)
+    if len(data) > _MAX_BYTES:
+        raise ScenarioError(f"is larger than {_MAX_BYTES} bytes: no scenario file", source=path)
     try:
         return data.decode("utf-8-sig").replace("\r\n", "\n")
     except UnicodeDecodeError as error:
@@ -78,8 +78,8 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
     ScenarioError
         Not TOML, with the line; or nested beyond sense.
     """
-    if len(text) > MAX_BYTES:
-        raise ScenarioError(f"is larger than {MAX_BYTES} characters", source=source)
+    if len(text) > _MAX_BYTES:
+        raise ScenarioError(f"is larger than {_MAX_BYTES} characters", source=source)
     if any(_is_deep_key(line) for line in text.splitlines()):
         raise ScenarioError("is nested too deeply to be a scenario", source=source)
     try:
@@ -97,4 +97,4 @@ def _is_deep_key(line: str) -> bool:
     *keys, rest = line.split("=")
     if not keys and rest.lstrip().startswith("["):
         keys = [rest]
-    return any(key.rpartition(",")[2].count(".") > MAX_NESTING for key in keys)
+    return any(key.rpartition(",")[2].count(".") > _MAX_NESTING for key in keys)

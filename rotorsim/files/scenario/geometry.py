@@ -12,9 +12,9 @@ from ...model import Bearing, MeshSize
 from ...model.bearing import FULL_TURN
 from ...model.pad_bearing import farthest
 
-TOLERANCE = 1e-9
+_TOLERANCE = 1e-9
 """Angle below which two edges are taken for one [rad]."""
-LEAST_CELLS = 2
+_LEAST_CELLS = 2
 """Cells that a groove, or the land between two, must at least have."""
 
 
@@ -22,7 +22,7 @@ def check_grooves(bearing: Bearing, mesh: MeshSize) -> None:
     """Grooves apart from each other, film between them, cells enough for both."""
     cell = FULL_TURN / mesh.circumferential
     covered = sum(groove.extent for groove in bearing.grooves)
-    if covered >= FULL_TURN - LEAST_CELLS * cell:
+    if covered >= FULL_TURN - _LEAST_CELLS * cell:
         raise InputError(
             f"leave no film: together they cover {math.degrees(covered):.4g} deg of 360 deg; "
             "make them smaller or fewer",
@@ -31,9 +31,9 @@ def check_grooves(bearing: Bearing, mesh: MeshSize) -> None:
     for index, groove in enumerate(bearing.grooves):
         key = f"bearing.groove[{index}]"
         _check_cells(groove.extent, mesh, f"{key}.extent", "groove")
-        least = LEAST_CELLS * bearing.length / mesh.axial
-        if groove.length is not None and groove.length < least * (1.0 - TOLERANCE):
-            needed = 2 * math.ceil(LEAST_CELLS * bearing.length / groove.length / 2.0)
+        least = _LEAST_CELLS * bearing.length / mesh.axial
+        if groove.length is not None and groove.length < least * (1.0 - _TOLERANCE):
+            needed = 2 * math.ceil(_LEAST_CELLS * bearing.length / groove.length / 2.0)
             raise InputError(
                 f"the mesh is too coarse for this groove: film.mesh.axial must be {needed} or "
                 f"more, or the groove at least {least * 1e3:.4g} mm long",
@@ -49,7 +49,7 @@ def _check_land(bearing: Bearing, here: int, there: int, mesh: MeshSize) -> None
     ahead = (second.center - first.center) % FULL_TURN
     land = ahead - 0.5 * (first.extent + second.extent)
     key = f"bearing.groove[{max(here, there)}].center"
-    if land < -TOLERANCE:
+    if land < -_TOLERANCE:
         raise InputError(
             f"overlaps bearing.groove[{min(here, there)}] by {-math.degrees(land):.4g} deg; "
             "move them apart or make them smaller",
@@ -60,12 +60,12 @@ def _check_land(bearing: Bearing, here: int, there: int, mesh: MeshSize) -> None
 
 def _check_cells(extent: float, mesh: MeshSize, key: str, name: str) -> None:
     cells = extent * mesh.circumferential / FULL_TURN
-    if cells < LEAST_CELLS - TOLERANCE:
-        needed = math.ceil(LEAST_CELLS * FULL_TURN / extent) if extent > TOLERANCE else 0
+    if cells < _LEAST_CELLS - _TOLERANCE:
+        needed = math.ceil(_LEAST_CELLS * FULL_TURN / extent) if extent > _TOLERANCE else 0
         cure = f"film.mesh.circumferential must be {needed} or more" if 0 < needed <= 4096 else ""
         raise InputError(
             f"the mesh is too coarse for this {name} ({math.degrees(extent):.4g} deg, "
-            f"{cells:.2g} cells; at least {LEAST_CELLS} are needed)"
+            f"{cells:.2g} cells; at least {_LEAST_CELLS} are needed)"
             + (f": {cure}" if cure else ": make it larger"),
             key=key,
         )
@@ -79,17 +79,17 @@ def check_arcs(bearing: Bearing) -> None:
     for here, there in pairwise([*order, order[0]]):
         first, second = bearing.arcs[here], bearing.arcs[there]
         to_next = (second.start - first.start) % FULL_TURN
-        if to_next < TOLERANCE or to_next > FULL_TURN - TOLERANCE:
+        if to_next < _TOLERANCE or to_next > FULL_TURN - _TOLERANCE:
             to_next = FULL_TURN if here == there else 0.0
         gap = to_next - (first.end - first.start)
         key = f"bearing.arc[{here}].end"
-        if gap < -TOLERANCE:
+        if gap < -_TOLERANCE:
             raise InputError(
                 f"overlaps bearing.arc[{there}] by {-math.degrees(gap):.4g} deg; end the one "
                 "where the other starts",
                 key=key,
             )
-        if gap > TOLERANCE and not _in_groove(bearing, first.end, gap):
+        if gap > _TOLERANCE and not _in_groove(bearing, first.end, gap):
             raise InputError(
                 f"the bore is open for {math.degrees(gap):.4g} deg after this arc; let the next "
                 "arc start here, or put a groove over the opening",
@@ -102,8 +102,8 @@ def _in_groove(bearing: Bearing, start: float, extent: float) -> bool:
     for groove in bearing.grooves:
         if not bearing.spans_length(groove):
             continue
-        from_edge = (start - (groove.center - 0.5 * groove.extent) + TOLERANCE) % FULL_TURN
-        if from_edge + extent <= groove.extent + 2.0 * TOLERANCE:
+        from_edge = (start - (groove.center - 0.5 * groove.extent) + _TOLERANCE) % FULL_TURN
+        if from_edge + extent <= groove.extent + 2.0 * _TOLERANCE:
             return True
     return False
 
@@ -120,7 +120,7 @@ def check_tilt(bearing: Bearing, eccentricity_ratio: float | None) -> None:
         )
 
 
-def reach(bearing: Bearing) -> float:
+def _reach(bearing: Bearing) -> float:
     """Largest eccentricity ratio that any position within the lobes has (1 for a plain bore)."""
     theta = np.linspace(0.0, FULL_TURN, 720, endpoint=False)
     bore = np.ones_like(theta)
@@ -158,7 +158,7 @@ def check_eccentricity(bearing: Bearing, eccentricity_ratio: float | None) -> No
     """Refuse an eccentricity ratio at which the journal touches a lobe wherever it stands."""
     if eccentricity_ratio is None or all(arc.preload == 0.0 for arc in bearing.arcs):
         return
-    limit = reach(bearing)
+    limit = _reach(bearing)
     if eccentricity_ratio >= limit:
         raise InputError(
             "the journal touches a lobe in every direction: with these lobes it must be below "

@@ -28,11 +28,11 @@ from ...model.entries import (
     parts,
 )
 
-Path = tuple[str | int, ...]
-MAX_ENTRIES = 10_000
+_Path = tuple[str | int, ...]
+_MAX_ENTRIES = 10_000
 """Entries of the longest list that is read."""
-MAX_OTHERS = 10
-MAX_VALUE = 120
+_MAX_OTHERS = 10
+_MAX_VALUE = 120
 _FAILED: Any = object()
 _PLAIN = {
     bool: "must be true or false, without quotes",
@@ -64,7 +64,7 @@ _SAID_OTHERWISE = {
 """What users call entries, by table, and what the format calls them."""
 
 
-class Finding(NamedTuple):
+class _Finding(NamedTuple):
     """One thing wrong."""
 
     key: str
@@ -92,7 +92,7 @@ class Reader:
         self.source = source
         self.lists: dict[str, tuple[Any, ...]] = {}
         """Values of the entries of which a file may list several, by key."""
-        self._found: list[Finding] = []
+        self._found: list[_Finding] = []
 
     def arguments(self) -> dict[str, Any]:
         """Return the arguments of `root`.
@@ -107,8 +107,8 @@ class Reader:
             # A misspelt key also leaves the right one missing: name the misspelling first.
             first, *rest = sorted(self._found, key=lambda finding: finding.rank)
             others = [str(InputError(f.message, key=f.key, value=f.value)) for f in rest]
-            if len(others) > MAX_OTHERS:
-                others[MAX_OTHERS:] = [f"and {len(others) - MAX_OTHERS} more"]
+            if len(others) > _MAX_OTHERS:
+                others[_MAX_OTHERS:] = [f"and {len(others) - _MAX_OTHERS} more"]
             raise ScenarioError(
                 first.message, source=self.source, key=first.key, value=first.value,
                 others=tuple(others),
@@ -117,16 +117,16 @@ class Reader:
 
     def error(self, error: InputError) -> ScenarioError:
         """Return an error about entries that were read, with file and value."""
-        path, value = as_written(_location(error.key or ""), self.tables)
+        path, value = _as_written(_location(error.key or ""), self.tables)
         return ScenarioError(
-            error.message, source=self.source, key=dotted(path), value=shown(value)
+            error.message, source=self.source, key=_dotted(path), value=_shown(value)
         )
 
-    def _fail(self, path: Path, message: str, value: object = None, rank: int = 1) -> Any:
-        self._found.append(Finding(dotted(path), message, shown(value), rank))
+    def _fail(self, path: _Path, message: str, value: object = None, rank: int = 1) -> Any:
+        self._found.append(_Finding(_dotted(path), message, _shown(value), rank))
         return _FAILED
 
-    def _arguments(self, maker: Callable[..., Any], table: dict[str, Any], path: Path) -> Any:
+    def _arguments(self, maker: Callable[..., Any], table: dict[str, Any], path: _Path) -> Any:
         known, read = entries(maker), {}
         for key, value in table.items():
             entry = known.get(key)
@@ -139,7 +139,7 @@ class Reader:
                 read[entry.name] = self._fail((*path, key), _missing(entry, path), rank=2)
         return read
 
-    def _table(self, maker: Callable[..., Any], table: Any, path: Path) -> Any:
+    def _table(self, maker: Callable[..., Any], table: Any, path: _Path) -> Any:
         if not isinstance(table, dict):
             name = ".".join(_names(path))
             message = f"must be a table: [{name}] with one line for each of its keys"
@@ -151,10 +151,10 @@ class Reader:
         try:
             return maker(**read)
         except InputError as error:
-            where, value = as_written(_within(path, error.key), self.tables)
+            where, value = _as_written(_within(path, error.key), self.tables)
             return self._fail(where, error.message, value)
 
-    def _kind(self, made: Made, table: Any, path: Path) -> Any:
+    def _kind(self, made: Made, table: Any, path: _Path) -> Any:
         """Read a table that says its kind."""
         if not (isinstance(table, dict) and isinstance(made.by, dict)):
             return self._table(made.maker(), table, path)
@@ -175,7 +175,7 @@ class Reader:
                 self._fail((*path, key), message, value)
         return self._table(made.maker(kind), rest, path)
 
-    def _value(self, hint: Any, value: Any, path: Path) -> Any:
+    def _value(self, hint: Any, value: Any, path: _Path) -> Any:
         bare, marks, members = parts(hint)
         for mark in marks:
             if isinstance(mark, Made):
@@ -197,13 +197,13 @@ class Reader:
         numbers = [mark for mark in marks if isinstance(mark, Number)]
         return self._plain(bare, value, path, numbers)
 
-    def _try(self, read: Callable[[Any], Any], value: Any, path: Path) -> Any:
+    def _try(self, read: Callable[[Any], Any], value: Any, path: _Path) -> Any:
         try:
             return read(value)
         except InputError as error:
             return self._fail(path, error.message, value)
 
-    def _plain(self, kind: Any, value: Any, path: Path, numbers: list[Number]) -> Any:
+    def _plain(self, kind: Any, value: Any, path: _Path, numbers: list[Number]) -> Any:
         allowed = (int, float) if kind is float else (kind,)
         if not isinstance(value, allowed) or (isinstance(value, bool) and kind is not bool):
             return self._fail(path, _PLAIN[kind] + _hints(numbers), value)
@@ -219,16 +219,16 @@ class Reader:
                 return _FAILED
         return value
 
-    def _listed(self, value: Any, path: Path) -> Any:
+    def _listed(self, value: Any, path: _Path) -> Any:
         listed = value if isinstance(value, list) else [value]
         if not listed:
             return self._fail(path, "must hold at least one entry, the list is empty", value)
-        if len(listed) > MAX_ENTRIES:
-            message = f"must hold at most {MAX_ENTRIES} entries, it has {len(listed)}"
+        if len(listed) > _MAX_ENTRIES:
+            message = f"must hold at most {_MAX_ENTRIES} entries, it has {len(listed)}"
             return self._fail(path, message)
         return listed
 
-    def _several(self, hint: Any, value: Any, path: Path) -> Any:
+    def _several(self, hint: Any, value: Any, path: _Path) -> Any:
         bare, marks, _ = parts(hint)
         one = bare
         for mark in marks:
@@ -237,10 +237,10 @@ class Reader:
         if listed is _FAILED:
             return _FAILED
         read = [self._value(one, entry, _place(path, i, value)) for i, entry in enumerate(listed)]
-        self.lists[dotted(path)] = tuple(read)
+        self.lists[_dotted(path)] = tuple(read)
         return _FAILED if any(entry is _FAILED for entry in read) else read[0]
 
-    def _tuple(self, inner: tuple[Any, ...], value: Any, path: Path) -> Any:
+    def _tuple(self, inner: tuple[Any, ...], value: Any, path: _Path) -> Any:
         if inner[-1] is Ellipsis:
             listed = self._listed(value, path)
             inner = (inner[0],) * len(listed) if listed is not _FAILED else ()
@@ -258,7 +258,7 @@ class Reader:
         )
         return _FAILED if any(entry is _FAILED for entry in read) else read
 
-    def _unknown(self, key: str, path: Path) -> str:
+    def _unknown(self, key: str, path: _Path) -> str:
         names = _names(path)
         tables = tables_of(self.root)
         known = tables.get(names, ())
@@ -280,7 +280,7 @@ def _member(members: tuple[Any, ...], value: Any) -> Any:
     return (tables if isinstance(value, dict) and tables else others)[0]
 
 
-def _place(path: Path, index: int, value: Any) -> Path:
+def _place(path: _Path, index: int, value: Any) -> _Path:
     """Path of an entry of a list; one value may stand for a list of one."""
     return (*path, index) if isinstance(value, list) else path
 
@@ -289,7 +289,7 @@ def _hints(numbers: list[Number]) -> str:
     return "".join(f" ({number.hint})" for number in numbers if number.hint)
 
 
-def _missing(entry: Entry, path: Path) -> str:
+def _missing(entry: Entry, path: _Path) -> str:
     if entry.example is None:
         return f"is missing; the file needs a table [{'.'.join((*_names(path), entry.key))}]"
     example = entry.example
@@ -341,7 +341,7 @@ def tables_of(root: Callable[..., Any]) -> dict[tuple[str, ...], tuple[str, ...]
     return tables
 
 
-def as_written(path: Path, tables: Any) -> tuple[Path, Any]:
+def _as_written(path: _Path, tables: Any) -> tuple[_Path, Any]:
     """Return the path as the file has it, and what stands there (None: nothing).
 
     One value may be written where a list can stand: its index is then dropped from the path.
@@ -362,21 +362,21 @@ def _under(tables: Any, part: str | int) -> Any:
         return None
 
 
-def dotted(path: Path) -> str:
+def _dotted(path: _Path) -> str:
     """``bearing.groove[1].center``."""
     text = ""
     for part in path:
         text += f"[{part}]" if isinstance(part, int) else (f".{part}" if text else str(part))
-    return text[:MAX_VALUE]
+    return text[:_MAX_VALUE]
 
 
-def _location(key: str) -> Path:
-    """Parts of a dotted key, the inverse of `dotted`."""
+def _location(key: str) -> _Path:
+    """Parts of a dotted key, the inverse of `_dotted`."""
     divided = key.replace("]", "").replace("[", ".").split(".")
     return tuple(int(part) if part.isdigit() else part for part in divided if part)
 
 
-def _within(path: Path, key: str | None) -> Path:
+def _within(path: _Path, key: str | None) -> _Path:
     """Path of what an object, made of the table at `path`, complains of.
 
     It names a field of its own, or one from the top, such as ``bearing.groove[1].length``.
@@ -389,14 +389,14 @@ def _within(path: Path, key: str | None) -> Path:
     return (*path, *inner)
 
 
-def shown(value: object) -> object:
+def _shown(value: object) -> object:
     """Return the value, or a shortened text of one too large for a message."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):
         return "a value too large to show"
-    return value if len(text) <= MAX_VALUE else f"{text[:MAX_VALUE]}..."
+    return value if len(text) <= _MAX_VALUE else f"{text[:_MAX_VALUE]}..."
 
 
-def _names(path: Path) -> tuple[str, ...]:
+def _names(path: _Path) -> tuple[str, ...]:
     return tuple(part for part in path if isinstance(part, str))

@@ -29,7 +29,7 @@ from .consistency import settled
 from .document import parse_toml, read_text
 from .reader import Reader
 
-MAX_TITLE = 500
+_MAX_TITLE = 500
 _BEARINGS = Made({"bore": Bearing, "tilting_pad": tilting_pad_bearing})
 """What ``[bearing]`` makes, by its ``kind``."""
 _ROTORS = Made({"rigid": Rotor.rigid, "jeffcott": Rotor.jeffcott})
@@ -43,8 +43,8 @@ class TitleEntry(Leaf):
         """Return the text."""
         if not isinstance(value, str):
             raise InputError("must be text in quotes")
-        if len(value) > MAX_TITLE:
-            raise InputError(f"must be at most {MAX_TITLE} characters")
+        if len(value) > _MAX_TITLE:
+            raise InputError(f"must be at most {_MAX_TITLE} characters")
         if not value.isprintable():
             raise InputError(
                 "must be one line of text without control characters such as tabs, line ends or "

@@ -25,10 +25,10 @@ from .style import MICRO, SETTINGS, model_style, new_axes
 _FRAMES_PER_SECOND = 12
 _RUN_FRAMES = 50
 """Of the first act, the whole run."""
-SLOW_FRAMES, SLOW_FRAMES_PER_REVOLUTION = 72, 16
+_SLOW_FRAMES, _SLOW_FRAMES_PER_REVOLUTION = 72, 16
 """Of the second act, the last turns in slow motion."""
-TRAIL_REVOLUTIONS = 3.0
-FORCE_LENGTH = 0.45
+_TRAIL_REVOLUTIONS = 3.0
+_FORCE_LENGTH = 0.45
 """Arrow of the median film force, in clearances; longer ones stop at twice that."""
 _PATH_POINTS = 4000
 
@@ -106,7 +106,7 @@ class _Scene:
         size = np.hypot(*force.T)
         middle = max(float(np.median(size)), 1e-30)
         limit = np.minimum(1.0, 2.0 * middle / np.maximum(size, 1e-30))
-        scale = FORCE_LENGTH * orbit.radial_clearance * MICRO / middle
+        scale = _FORCE_LENGTH * orbit.radial_clearance * MICRO / middle
         self.arrows = force * (limit * scale)[:, None]
         self._above(above)
         self._below(below)
@@ -114,9 +114,9 @@ class _Scene:
     def frames(self, slow_only: bool) -> NDArray[np.intp]:
         """Sample shown in each frame."""
         count = self.orbit.t.size
-        turns = SLOW_FRAMES / SLOW_FRAMES_PER_REVOLUTION
+        turns = _SLOW_FRAMES / _SLOW_FRAMES_PER_REVOLUTION
         first = max(float(self.orbit.revolutions[-1]) - turns, float(self.orbit.revolutions[0]))
-        wanted = np.linspace(first, float(self.orbit.revolutions[-1]), SLOW_FRAMES)
+        wanted = np.linspace(first, float(self.orbit.revolutions[-1]), _SLOW_FRAMES)
         slow = np.clip(np.searchsorted(self.orbit.revolutions, wanted), 0, count - 1)
         if slow_only:
             return slow
@@ -129,7 +129,7 @@ class _Scene:
         at = int(frames[min(frame, frames.size - 1)])
         act_one = not slow_only and frame < _RUN_FRAMES
         turns = self.orbit.revolutions
-        since = turns[at] - TRAIL_REVOLUTIONS
+        since = turns[at] - _TRAIL_REVOLUTIONS
         if act_one and frame:
             since = min(since, turns[frames[frame - 1]])
         start = int(np.searchsorted(turns, since))
@@ -144,7 +144,7 @@ class _Scene:
         )
         self.cursor.set_xdata([turns[at], turns[at]])
         if frame == (0 if slow_only else _RUN_FRAMES):
-            self.below.set_xlim(float(turns[frames[-SLOW_FRAMES]]), float(turns[-1]))
+            self.below.set_xlim(float(turns[frames[-_SLOW_FRAMES]]), float(turns[-1]))
         pace = "" if act_one else ", slow motion"
         self.words.set_text(
             f"turn {turns[at]:.1f}, {self.orbit.t[at]:.3f} s, "

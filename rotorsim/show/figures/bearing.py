@@ -103,7 +103,7 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
         A point was solved without its fields.
     """
     films = [_fields(point) for point in points]
-    heat = [mean_temperature(film) for film in films]
+    heat = [_mean_temperature(film) for film in films]
     known = [values for values in heat if values is not None]
     size = (9.0 if known else 5.0, 0.7 + 2.3 * len(films))
     figure, axes = new_axes(len(films), 2 if known else 1, size, title, sharex=True, sharey=True)
@@ -130,7 +130,7 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
 def film_profiles(points: Sequence[OperatingPoint], title: str = "") -> Figure:
     """Pressure and temperature around the bearing at mid-plane, all films in one picture."""
     films = [_fields(point) for point in points]
-    heat = [mean_temperature(film) for film in films]
+    heat = [_mean_temperature(film) for film in films]
     warm = any(values is not None for values in heat)
     figure, axes = new_axes(1, 2 if warm else 1, (8.5 if warm else 4.6, 3.2), title)
     for point, film, temperature in zip(points, films, heat, strict=True):
@@ -184,7 +184,7 @@ def _angles(theta: Array) -> tuple[Array, NDArray[np.intp]]:
     return turned[order], order
 
 
-def mean_temperature(film: FilmFields) -> Array | None:
+def _mean_temperature(film: FilmFields) -> Array | None:
     """Mean across the film, (n, m) [degC]; None where the film has one temperature."""
     mean = film.temperature.mean(axis=2) - ZERO_CELSIUS
     return mean if np.ptp(mean) > 1e-6 else None

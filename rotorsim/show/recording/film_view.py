@@ -28,7 +28,7 @@ _JOURNAL_LIMIT = 100_000
 
 
 @dataclass(frozen=True)
-class Quantity:
+class _Quantity:
     """What colours the film, on one scale for all films of the recording."""
 
     name: str
@@ -61,18 +61,18 @@ class Quantity:
         return surfaces.PRESSURE_HEIGHT * np.clip((values - self.low) / span, 0.0, 1.0)
 
 
-def quantities(films: Sequence[FilmFrame]) -> list[Quantity]:
+def quantities(films: Sequence[FilmFrame]) -> list[_Quantity]:
     """Scales that hold for all films together, so that colours may be compared."""
     resting = [float(film.pressure.max()) for film in films if film.time is None]
     moving = [float(film.pressure.max()) for film in films if film.time is not None]
     # A journal about to touch would leave every other moment colourless.
     usual = float(np.quantile(moving, _MOVING_SHARE)) if moving else 0.0
     pressure = max([usual, *resting]) / 1e6
-    found = [Quantity("pressure", "MPa", 0.0, max(pressure, 1e-9), "viridis")]
+    found = [_Quantity("pressure", "MPa", 0.0, max(pressure, 1e-9), "viridis")]
     warm = [film.temperature - ZERO_CELSIUS for film in films if film.temperature is not None]
     if warm:
         low, high = min(float(t.min()) for t in warm), max(float(t.max()) for t in warm)
-        found.append(Quantity("temperature", "°C", low, max(high, low + 1e-6), "inferno"))
+        found.append(_Quantity("temperature", "°C", low, max(high, low + 1e-6), "inferno"))
     return found
 
 
@@ -90,7 +90,7 @@ def frames_of(films: Sequence[FilmFrame], name: str) -> list[FilmFrame]:
     )
 
 
-def shows(quantity: Quantity, frames: Sequence[FilmFrame]) -> bool:
+def shows(quantity: _Quantity, frames: Sequence[FilmFrame]) -> bool:
     """Whether these films have that quantity."""
     return quantity.name == "pressure" or all(f.temperature is not None for f in frames)
 
@@ -120,7 +120,7 @@ def changing(frames: Sequence[FilmFrame]) -> list[FilmFrame]:
     ]
 
 
-def film_view(name: str, quantity: Quantity, film: FilmFrame) -> rrb.Spatial3DView:
+def film_view(name: str, quantity: _Quantity, film: FilmFrame) -> rrb.Spatial3DView:
     """Show the bearing with one quantity on its bore."""
     size = film.journal_radius * surfaces.MILLI
     root = f"/bearing/{name}"
@@ -142,7 +142,7 @@ def film_view(name: str, quantity: Quantity, film: FilmFrame) -> rrb.Spatial3DVi
     )
 
 
-def unwrapped_view(name: str, quantity: Quantity, film: FilmFrame) -> rrb.Spatial3DView:
+def unwrapped_view(name: str, quantity: _Quantity, film: FilmFrame) -> rrb.Spatial3DView:
     """Show the film rolled out with one quantity as height and colour."""
     size = film.journal_radius * surfaces.MILLI
     return rrb.Spatial3DView(
@@ -161,7 +161,7 @@ def unwrapped_view(name: str, quantity: Quantity, film: FilmFrame) -> rrb.Spatia
 def _send_frames(
     stream: rr.RecordingStream,
     root: str,
-    quantity: Quantity,
+    quantity: _Quantity,
     frames: Sequence[FilmFrame],
     runs: Sequence[Run],
 ) -> None:
@@ -191,7 +191,7 @@ def _send_frames(
             _send_caption(stream, f"{root}/{shape}/frame", frames[0], shape, peaks, index, which)
 
 
-def _caption(film: FilmFrame, quantity: Quantity, values: Array) -> str:
+def _caption(film: FilmFrame, quantity: _Quantity, values: Array) -> str:
     """When, and the largest value; of a temperature that of the means across the film, too."""
     if quantity.name == "pressure":
         return f"{_moment(film)}, max {values.max():.3g} {quantity.unit}"
@@ -312,7 +312,7 @@ def _send_motion(stream: rr.RecordingStream, entity: str, run: Run, scale: float
     send_run(stream, entity, run, thin(run.samples, _JOURNAL_LIMIT), columns)
 
 
-def _log_scale(stream: rr.RecordingStream, root: str, quantity: Quantity, film: FilmFrame) -> None:
+def _log_scale(stream: rr.RecordingStream, root: str, quantity: _Quantity, film: FilmFrame) -> None:
     """Write colour bars with their numbers, axes of the rolled-out film, and the exaggeration."""
     size = film.journal_radius * surfaces.MILLI
     half = 0.5 * film.length * surfaces.MILLI

@@ -24,14 +24,14 @@ from .series_view import (
     Series,
 )
 
-Part: TypeAlias = rrb.View | rrb.Container
+_Part: TypeAlias = rrb.View | rrb.Container
 _REVOLUTIONS_PER_SECOND = 3.0
 """Turns of the shaft in one second of watching."""
-PAGES = ("Overview", "Orbits", "Film", "Stability", "Time series")
+_PAGES = ("Overview", "Orbits", "Film", "Stability", "Time series")
 
 
 @dataclass(frozen=True)
-class Front:
+class _Front:
     """What the overview of one kind of scenario shows beside orbits, film, map and summary.
 
     Series that a run does not have are left out; `frequencies`: its spectrum or cascade.
@@ -41,13 +41,13 @@ class Front:
     frequencies: bool = False
 
 
-_WHOLE_JOB = Front((ECCENTRICITY, ACTUATOR_FORCE))
-_PUSHED = Front((LOAD, ACTUATOR_FORCE, DISPLACEMENT, MINIMUM_FILM))
-_PASSING = Front((DISPLACEMENT, SPEED_SERIES, WHIRL), frequencies=True)
+_WHOLE_JOB = _Front((ECCENTRICITY, ACTUATOR_FORCE))
+_PUSHED = _Front((LOAD, ACTUATOR_FORCE, DISPLACEMENT, MINIMUM_FILM))
+_PASSING = _Front((DISPLACEMENT, SPEED_SERIES, WHIRL), frequencies=True)
 FRONTS = {
-    "free_decay": Front((ECCENTRICITY, WHIRL, ACTUATOR_FORCE)),
-    "unbalance": Front((DISPLACEMENT, MINIMUM_FILM, ACTUATOR_FORCE), frequencies=True),
-    "harmonic": Front((LOAD, ACTUATOR_FORCE, DISPLACEMENT), frequencies=True),
+    "free_decay": _Front((ECCENTRICITY, WHIRL, ACTUATOR_FORCE)),
+    "unbalance": _Front((DISPLACEMENT, MINIMUM_FILM, ACTUATOR_FORCE), frequencies=True),
+    "harmonic": _Front((LOAD, ACTUATOR_FORCE, DISPLACEMENT), frequencies=True),
     "step": _PUSHED,
     "base_motion": _PUSHED,
     "run_up": _PASSING,
@@ -63,7 +63,7 @@ def layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint
     ----------
     contents : RecordingContents
     page : str
-        One of `PAGES`: the one shown first.
+        One of `_PAGES`: the one shown first.
     """
     pages = [
         built
@@ -115,19 +115,19 @@ def _groups(contents: RecordingContents) -> list[tuple[str, list[Run]]]:
     ]
 
 
-def _grouped(contents: RecordingContents, make: Callable[[list[Run]], Part]) -> Part:
-    parts: list[Part] = []
+def _grouped(contents: RecordingContents, make: Callable[[list[Run]], _Part]) -> _Part:
+    parts: list[_Part] = []
     for name, group in _groups(contents):
         parts.append(_named(make(group), name))
     return _tabs(parts)
 
 
-def _film_views(contents: RecordingContents, flat: bool) -> list[Part]:
+def _film_views(contents: RecordingContents, flat: bool) -> list[_Part]:
     films = contents.films
     if not films:
         return []
     make = film_view.unwrapped_view if flat else film_view.film_view
-    views: list[Part] = []
+    views: list[_Part] = []
     for name in film_view.film_names(films):
         frames = film_view.frames_of(films, name)
         for quantity in film_view.quantities(films):
@@ -136,30 +136,30 @@ def _film_views(contents: RecordingContents, flat: bool) -> list[Part]:
     return views
 
 
-def _frequency_views(contents: RecordingContents) -> list[Part]:
+def _frequency_views(contents: RecordingContents) -> list[_Part]:
     """Cascades of runs through the speeds, spectra of those at one."""
-    views: list[Part] = [chart.view for chart in contents.cascade_charts]
+    views: list[_Part] = [chart.view for chart in contents.cascade_charts]
     return views if contents.spectrum_chart is None else [*views, contents.spectrum_chart.view]
 
 
-def _overview(contents: RecordingContents) -> Part:
+def _overview(contents: RecordingContents) -> _Part:
     front = FRONTS.get(contents.kind, _WHOLE_JOB)
-    frequencies: list[Part] = _frequency_views(contents) if front.frequencies else []
-    middle: list[Part] = [_tabs(frequencies)] if frequencies else []
+    frequencies: list[_Part] = _frequency_views(contents) if front.frequencies else []
+    middle: list[_Part] = [_tabs(frequencies)] if frequencies else []
     films = _film_views(contents, flat=False)
     if middle and films:
         middle.append(_tabs(films))
     else:
         middle += films[-2:] if len(films) > 1 else [*films, *_film_views(contents, flat=True)]
-    stability: list[Part] = [chart.view for chart in contents.map_charts[:1]]
+    stability: list[_Part] = [chart.view for chart in contents.map_charts[:1]]
     if contents.eigenvalue_chart is not None:
         # The map is that of a rigid rotor: another one has its eigenvalues in front.
         rigid = contents.rotor_mass is not None
         stability.insert(len(stability) if rigid else 0, contents.eigenvalue_chart.view)
-    right: list[Part] = [_summary_view()]
+    right: list[_Part] = [_summary_view()]
     if stability:
         right.append(_tabs(stability))
-    columns: list[Part] = []
+    columns: list[_Part] = []
     widths: list[float] = []
     if contents.runs:
         columns.append(_grouped(contents, lambda runs: _orbits_and_series(runs, front.series)))
@@ -171,11 +171,11 @@ def _overview(contents: RecordingContents) -> Part:
     return rrb.Horizontal(*columns, column_shares=widths, name="Overview")
 
 
-def _tabs(parts: Sequence[Part]) -> Part:
+def _tabs(parts: Sequence[_Part]) -> _Part:
     return rrb.Tabs(*parts) if len(parts) > 1 else parts[0]
 
 
-def _orbits_and_series(runs: list[Run], wanted: tuple[Series, ...]) -> Part:
+def _orbits_and_series(runs: list[Run], wanted: tuple[Series, ...]) -> _Part:
     plots = [series_view.series_view(one, runs) for one in series_view.series_of(runs, wanted)]
     views = [orbit_view(run) for run in runs]
     if len(runs) == 1 and runs[0].orbit.constant_speed:
@@ -187,14 +187,14 @@ def _orbits_and_series(runs: list[Run], wanted: tuple[Series, ...]) -> Part:
     )
 
 
-def _orbits(contents: RecordingContents) -> Part | None:
+def _orbits(contents: RecordingContents) -> _Part | None:
     if not contents.runs:
         return None
     page = _grouped(contents, _orbits_and_close_ups)
     return _named(page, "Orbits")
 
 
-def _orbits_and_close_ups(runs: list[Run]) -> Part:
+def _orbits_and_close_ups(runs: list[Run]) -> _Part:
     reach = zoom_reach(runs)
     close_ups = [orbit_view(run, zoom=reach) for run in runs if run.orbit.constant_speed]
     return rrb.Vertical(
@@ -204,18 +204,18 @@ def _orbits_and_close_ups(runs: list[Run]) -> Part:
     )
 
 
-def _named(part: Part, name: str) -> Part:
+def _named(part: _Part, name: str) -> _Part:
     part.name = name
     return part
 
 
-def _film(contents: RecordingContents) -> Part | None:
+def _film(contents: RecordingContents) -> _Part | None:
     views = [*_film_views(contents, flat=False), *_film_views(contents, flat=True)]
     return rrb.Grid(*views, grid_columns=len(views) // 2, name="Film") if views else None
 
 
-def _stability(contents: RecordingContents) -> Part | None:
-    parts: list[Part] = []
+def _stability(contents: RecordingContents) -> _Part | None:
+    parts: list[_Part] = []
     if contents.maps:
         parts.append(_tabs([chart.view for chart in contents.map_charts]))
     if contents.eigenvalue_chart is not None:
@@ -224,12 +224,12 @@ def _stability(contents: RecordingContents) -> Part | None:
     return rrb.Grid(*parts, grid_columns=2, name="Stability") if parts else None
 
 
-def _time_series(contents: RecordingContents) -> Part | None:
+def _time_series(contents: RecordingContents) -> _Part | None:
     if not contents.runs:
         return None
     return _named(_grouped(contents, _all_series), "Time series")
 
 
-def _all_series(runs: list[Run]) -> Part:
+def _all_series(runs: list[Run]) -> _Part:
     shown = series_view.series_of(runs)
     return rrb.Vertical(*[series_view.series_view(one, runs) for one in shown])

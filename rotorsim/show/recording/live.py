@@ -20,7 +20,7 @@ from .orbit_view import log_orbit_piece, log_surroundings, orbit_view
 from .runs import TIME, Run, runs_of
 from .write import APPLICATION
 
-PORT = 9876
+_PORT = 9876
 """Of the viewer; one that listens there already is used."""
 
 
@@ -95,13 +95,13 @@ def _viewer_stream() -> rr.RecordingStream:
     if not _viewer_is_open():
         _start_viewer()
     stream = rr.RecordingStream(APPLICATION, send_properties=False)
-    stream.connect_grpc(f"rerun+http://127.0.0.1:{PORT}/proxy")
+    stream.connect_grpc(f"rerun+http://127.0.0.1:{_PORT}/proxy")
     return stream
 
 
 def _viewer_is_open() -> bool:
     """Whether something listens at the viewer's port: here, or through a tunnel elsewhere."""
-    with suppress(OSError), socket.create_connection(("127.0.0.1", PORT), timeout=1.0):
+    with suppress(OSError), socket.create_connection(("127.0.0.1", _PORT), timeout=1.0):
         return True
     return False
 
@@ -111,7 +111,7 @@ def _start_viewer() -> None:
         raise InputError(
             "there is no display here (neither DISPLAY nor WAYLAND_DISPLAY is set) for a viewer; "
             "leave --live out and look at the recording on a computer with a screen, or forward "
-            f"port {PORT} from here to a viewer that is open there",
+            f"port {_PORT} from here to a viewer that is open there",
             key="--live",
         )
     program = viewer_program()
@@ -119,6 +119,6 @@ def _start_viewer() -> None:
         raise InputError("the rerun-sdk package has no viewer on this platform", key="--live")
     quiet = subprocess.DEVNULL
     subprocess.Popen(
-        [str(program), "--bind", "127.0.0.1", "--port", str(PORT)],
+        [str(program), "--bind", "127.0.0.1", "--port", str(_PORT)],
         stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True,
     )  # fmt: skip

@@ -28,8 +28,8 @@ SAMPLE_LIMIT = 1_000_000
 _MOVING_LIMIT = 1_000
 """Positions of a point that follows the speed of a run-up."""
 
-Indices = NDArray[np.intp]
-Columns = Callable[[Indices], Iterable[Any]]
+_Indices = NDArray[np.intp]
+_Columns = Callable[[_Indices], Iterable[Any]]
 
 
 Array = NDArray[np.float64]
@@ -86,33 +86,33 @@ def speed_index(speed: ArrayLike) -> rr.TimeColumn:
     return rr.TimeColumn(SPEED, sequence=rpm.astype(np.int64))
 
 
-def run_index(run: Run, rows: Indices) -> list[rr.TimeColumn]:
+def run_index(run: Run, rows: _Indices) -> list[rr.TimeColumn]:
     """Both timelines of a run at some of its samples."""
     return [_time_index(run.orbit.t[rows]), _revolution_index(run.orbit.revolutions[rows])]
 
 
-def thin(count: int, limit: int) -> Indices:
+def thin(count: int, limit: int) -> _Indices:
     """Every k-th of `count` samples, at most about `limit`, with the last one always kept."""
     step = max(1, -(-count // max(1, limit)))
     rows = np.arange(0, count, step)
     return rows if rows[-1] == count - 1 else np.append(rows, count - 1)
 
 
-def chunks(rows: Indices) -> Iterator[Indices]:
+def _chunks(rows: _Indices) -> Iterator[_Indices]:
     """Parts of at most `_CHUNK_ROWS`."""
     for start in range(0, rows.size, _CHUNK_ROWS):
         yield rows[start : start + _CHUNK_ROWS]
 
 
 def send_run(
-    stream: rr.RecordingStream, entity: str, run: Run, rows: Indices, columns: Columns
+    stream: rr.RecordingStream, entity: str, run: Run, rows: _Indices, columns: _Columns
 ) -> None:
     """Send samples `rows` of a run on both timelines; `columns` makes a chunk's components."""
-    for part in chunks(rows):
+    for part in _chunks(rows):
         stream.send_columns(entity, run_index(run, part), columns(part))
 
 
-def frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[Indices, Indices]:
+def frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[_Indices, _Indices]:
     """When a run passes from one tabulated speed to the next.
 
     Parameters
@@ -137,7 +137,7 @@ def frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[Indices, Indices]:
 
 def indices_of_frames(
     runs: Sequence[Run], frames: Sequence[FilmFrame]
-) -> list[tuple[list[rr.TimeColumn], Indices]]:
+) -> list[tuple[list[rr.TimeColumn], _Indices]]:
     """Where the frames of one model stand on every timeline.
 
     Parameters
@@ -180,7 +180,7 @@ def runs_named(runs: Sequence[Run], name: str) -> list[Run]:
     return found or list(runs)
 
 
-def distinct_speeds(runs: Sequence[Run]) -> list[tuple[Run, Indices]]:
+def distinct_speeds(runs: Sequence[Run]) -> list[tuple[Run, _Indices]]:
     """Tracks that differ in speed over time, each with the samples at which a point is moved.
 
     Runs of the two thermal models are commonly at the same speed: one point stands for both, that

@@ -16,8 +16,8 @@ from .colours import model_colour
 from .runs import REVOLUTIONS, SAMPLE_LIMIT, TIME, Run, send_run, thin
 
 Array = NDArray[np.float64]
-Indices = NDArray[np.intp]
-MICRO = 1e6
+_Indices = NDArray[np.intp]
+_MICRO = 1e6
 _STANDSTILL = 1e-5
 """Clearances per turn of the shaft below which a journal counts as at rest."""
 _ENVELOPE_LIMIT = 40_000
@@ -81,11 +81,11 @@ def whirl_ratio(orbit: Orbit, revolutions: float = 4.0) -> Array:
 
 
 def _displacement(orbit: Orbit) -> Array:
-    return np.stack([orbit.x, orbit.y], axis=-1) * MICRO
+    return np.stack([orbit.x, orbit.y], axis=-1) * _MICRO
 
 
 def _disc(orbit: Orbit) -> Array | None:
-    return orbit.displacements[:, 2:4] * MICRO if orbit.displacements.shape[1] > 2 else None
+    return orbit.displacements[:, 2:4] * _MICRO if orbit.displacements.shape[1] > 2 else None
 
 
 def _load(orbit: Orbit) -> Array | None:
@@ -97,7 +97,7 @@ def _actuator_force(orbit: Orbit) -> Array | None:
 
 
 DISPLACEMENT = Series("displacement_um", "Displacement x, y [µm]", _displacement)
-DISC = Series("disc_displacement_um", "Displacement of the disc x, y [µm]", _disc)
+_DISC = Series("disc_displacement_um", "Displacement of the disc x, y [µm]", _disc)
 LOAD = Series("load_N", "Load on the rotor x, y [N]", _load)
 ACTUATOR_FORCE = Series("actuator_force_N", "Actuator force x, y [N]", _actuator_force)
 ECCENTRICITY = Series(
@@ -105,16 +105,16 @@ ECCENTRICITY = Series(
     0.0, 1.05,
 )  # fmt: skip
 MINIMUM_FILM = Series(
-    "minimum_film_um", "Minimum film thickness [µm]", lambda orbit: orbit.min_film * MICRO, 0.0
+    "minimum_film_um", "Minimum film thickness [µm]", lambda orbit: orbit.min_film * _MICRO, 0.0
 )
 SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]", lambda orbit: orbit.speed * RPM, 0.0)
 WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", whirl_ratio, 0.0, 1.2)
 _ALL_SERIES = (
-    LOAD, ACTUATOR_FORCE, DISPLACEMENT, DISC, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
+    LOAD, ACTUATOR_FORCE, DISPLACEMENT, _DISC, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
 )  # fmt: skip
 
 
-def envelope_rows(values: Array, limit: int = _ENVELOPE_LIMIT) -> Indices:
+def envelope_rows(values: Array, limit: int = _ENVELOPE_LIMIT) -> _Indices:
     """Choose samples that keep every stretch's extremes: about `limit` at most, in order."""
     count = values.size
     if count <= limit:
@@ -172,7 +172,7 @@ def _send(
     series: Series,
     run: Run,
     values: Array,
-    rows: Indices,
+    rows: _Indices,
     names: list[str],
     paint: list[tuple[int, ...]],
 ) -> None:
@@ -186,7 +186,7 @@ def _send(
     stream.log(entity, style, static=True)
     count = values.shape[1]
 
-    def columns(part: Indices) -> rr.ComponentColumnList:
+    def columns(part: _Indices) -> rr.ComponentColumnList:
         return rr.Scalars.columns(scalars=values[part].reshape(-1)).partition([count] * part.size)
 
     send_run(stream, entity, run, rows, columns)

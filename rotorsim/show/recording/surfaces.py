@@ -14,7 +14,7 @@ from ...study.film_motion import FilmFrame
 Array = NDArray[np.float64]
 MILLI = 1e3
 
-AROUND, ALONG = 96, 16
+_AROUND, _ALONG = 96, 16
 """Display grid: cells around and along the bearing (the films' own grids may differ)."""
 DRAWN_CLEARANCE = 0.22
 """Clearance as drawn, in journal radii."""
@@ -33,7 +33,7 @@ def display_grid(film: FilmFrame) -> tuple[Array, Array]:
         Angles -pi to pi, the load line in the middle [rad]; places -L/2 to L/2 [mm].
     """
     half = 0.5 * film.length * MILLI
-    return np.linspace(-np.pi, np.pi, AROUND + 1), np.linspace(-half, half, ALONG + 1)
+    return np.linspace(-np.pi, np.pi, _AROUND + 1), np.linspace(-half, half, _ALONG + 1)
 
 
 def on_display_grid(film: FilmFrame, values: Array, at_ends: float | None) -> Array:
@@ -109,7 +109,7 @@ def unwrapped(film: FilmFrame, height: Array) -> Array:
     return np.stack([x, _UNWRAPPED_STRETCH * height * radius, z], axis=-1).reshape(-1, 3)
 
 
-def grid_triangles(rows: int = AROUND + 1, columns: int = ALONG + 1) -> NDArray[np.uint32]:
+def grid_triangles(rows: int = _AROUND + 1, columns: int = _ALONG + 1) -> NDArray[np.uint32]:
     """Two triangles for every cell of a (rows, columns) vertex grid."""
     first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
     a, b, c, d = first, first + 1, first + columns, first + columns + 1

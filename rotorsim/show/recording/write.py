@@ -33,7 +33,7 @@ def write_recording(
         replaced only once the new one is whole.
     contents : RecordingContents
     page : str
-        The page shown first, one of `rotorsim.show.recording.layout.PAGES`.
+        The page shown first, one of `rotorsim.show.recording.layout`.
 
     Returns
     -------

@@ -25,7 +25,7 @@ def headline(found: Results) -> str:
     if gaps and kind == "good":
         kind = ""
     return html.paragraph(
-        f"{text}{gaps}{extremes(found.points)}", f'"verdict {kind}"' if kind else "verdict"
+        f"{text}{gaps}{_extremes(found.points)}", f'"verdict {kind}"' if kind else "verdict"
     )
 
 
@@ -63,7 +63,7 @@ def _range(curves: Sequence[StabilityCurve]) -> str:
     return f" Over {span} this changes: {'; '.join(changes)}." if changes else ""
 
 
-def extremes(points: Sequence[OperatingPoint]) -> str:
+def _extremes(points: Sequence[OperatingPoint]) -> str:
     """Thinnest film and hottest oil of all converged points, with where they are."""
     known = [point for point in points if point.converged]
     if not known:
