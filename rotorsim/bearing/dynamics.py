@@ -187,7 +187,7 @@ class FilmDynamics:
         There m nu^2 is a real eigenvalue of the reduced A(i nu).
         """
         found: list[tuple[float, float]] = []
-        values = [self._threshold_misfit(ratio) for ratio in _PAD_RATIOS]
+        values = self._threshold_misfits(_PAD_RATIOS)
         for i in np.flatnonzero(np.diff(np.sign(values)) * np.sign(values)[:-1]):
             bracket = float(_PAD_RATIOS[i]), float(_PAD_RATIOS[i + 1])
             ratio = float(brentq(self._threshold_misfit, *bracket, xtol=_RATIO_TOLERANCE))  # type: ignore[arg-type]
@@ -197,13 +197,28 @@ class FilmDynamics:
                 found.append((float(real.real) / (ratio * self.speed) ** 2, ratio))
         return sorted(found)
 
+    def _threshold_misfits(self, ratios: Array) -> Array:
+        """`_threshold_misfit` of many ratios."""
+        if self.stored_oil is not None or self.mass is None:
+            return np.array([self._threshold_misfit(float(ratio)) for ratio in ratios])
+        frequency = (ratios * self.speed)[:, None, None]
+        law = self.stiffness + 1j * frequency * self.damping - frequency**2 * self.mass
+        reduced = condensed(law, self.coupled)
+        return _misfit(reduced.real, reduced.imag / frequency, frequency[:, 0, 0])
+
     def _threshold_misfit(self, ratio: float) -> float:
         """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold."""
-        routh = routh_coefficients(*self.coefficients(ratio))
-        squeezed = (ratio * self.speed) ** 2 * routh.det_damping
-        size = abs(routh.det_stiffness) + abs(squeezed)
-        # Without stiffness and damping across there is nothing to lose its balance.
-        return float((routh.det_shifted - squeezed) / size) if size > 0.0 else 0.0
+        return float(_misfit(*self.coefficients(ratio), np.asarray(ratio * self.speed)))
+
+
+def _misfit(stiffness: Array, damping: Array, frequency: Array) -> Array:
+    routh = routh_coefficients(stiffness, damping)
+    squeezed = frequency**2 * routh.det_damping
+    size = np.abs(routh.det_stiffness) + np.abs(squeezed)
+    # Without stiffness and damping across there is nothing to lose its balance.
+    return np.where(
+        size > 0.0, (routh.det_shifted - squeezed) / np.where(size > 0.0, size, 1.0), 0.0
+    )
 
 
 def film_dynamics(
@@ -256,23 +271,21 @@ def film_dynamics(
     )
 
 
-def full_coefficients(
-    solution: FilmSolution, turn: Array, frequency_ratio: float | None, *, rotations: bool
-) -> FullCoefficients:
+def with_rotations(solution: FilmSolution, turn: Array) -> FilmDynamics:
+    """Return the dynamics with the journal's rotations; `turn`, (2, 2), as in `film_dynamics`."""
+    both = np.asarray(np.kron(np.eye(2), turn), dtype=float)
+    return film_dynamics(solution, both, rotations=True)
+
+
+def full_coefficients(dynamics: FilmDynamics, frequency_ratio: float | None) -> FullCoefficients:
     """Return K, C and M over journal and pads, load frame.
 
     Parameters
     ----------
-    solution : FilmSolution
-    turn : (2, 2) array
-        From the film's frame to the load frame.
+    dynamics : FilmDynamics
     frequency_ratio : float or None
         Whirl over shaft frequency at which they are wanted; None: they hold at any.
-    rotations : bool
-        Whether to add the journal's rotations.
     """
-    turn = np.asarray(np.kron(np.eye(2), turn), dtype=float) if rotations else turn
-    dynamics = film_dynamics(solution, turn, rotations=rotations)
     stiffness, damping = dynamics.all_coefficients(frequency_ratio or _DEFAULT_RATIO)
     mass = np.zeros_like(stiffness) if dynamics.mass is None else dynamics.mass
     return FullCoefficients(dynamics.names, stiffness, damping, mass)

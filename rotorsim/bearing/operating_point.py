@@ -113,10 +113,10 @@ _ROTATION = "theta_x"
 
 def condensed(law: NDArray[np.complex128], kept: int) -> NDArray[np.complex128]:
     """Eliminate all unknowns but the first `kept`, on which alone forces act."""
-    if len(law) == kept:
+    if law.shape[-1] == kept:
         return law
-    own = np.linalg.solve(law[kept:, kept:], law[kept:, :kept])
-    return np.asarray(law[:kept, :kept] - law[:kept, kept:] @ own)
+    own = np.linalg.solve(law[..., kept:, kept:], law[..., kept:, :kept])
+    return np.asarray(law[..., :kept, :kept] - law[..., :kept, kept:] @ own)
 
 
 @dataclass(frozen=True)

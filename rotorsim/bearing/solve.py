@@ -26,6 +26,7 @@ from .dynamics import (
     frequency_coefficients,
     full_coefficients,
     stored_oil_warnings,
+    with_rotations,
 )
 from .operating_point import FilmFields, OperatingPoint, failed_point
 from .pads import pad_results, unloaded_warnings
@@ -168,7 +169,9 @@ def operating_point(
         moment=turn @ journal_moment(state),
         supply_flow=tuple(float(demand) for demand in supply_flow(state, flow)),
         coefficients_full=(
-            full_coefficients(solution, turn, frequency_ratio, rotations=case.film.rotations)
+            full_coefficients(
+                with_rotations(solution, turn) if case.film.rotations else dynamics, frequency_ratio
+            )
             if case.film.rotations or dynamics.has_pads
             else None
         ),

@@ -278,12 +278,10 @@ def _supply_cells(
     middles = 0.5 * (theta_faces[1:] + theta_faces[:-1])
     y = 0.5 * (y_faces[1:] + y_faces[:-1])
     supply = np.full((middles.size, y.size), -1, dtype=np.int64)
-    for i, theta in enumerate(middles):
-        number = _groove_at(bearing, float(theta))
-        if number is None:
-            continue
-        length = bearing.grooves[number].length or bearing.length
-        supply[i, np.abs(y) < length / 2.0] = number
+    for number, groove in reversed(list(enumerate(bearing.grooves))):
+        around = np.abs(angle_between(middles, groove.center)) < groove.extent / 2.0
+        along = np.abs(y) < (groove.length or bearing.length) / 2.0
+        supply[around[:, None] & along] = number
     return supply, y_faces
 
 

@@ -12,17 +12,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..bearing.operating_point import condensed
+from ..bearing.table_data import PAD_MATRICES
 from ..errors import InputError, OutOfRangeError
 
 if TYPE_CHECKING:
     from ..bearing.interpolation import CoefficientInterpolator
+    from ..bearing.operating_point import OperatingPoint
     from ..bearing.table import CoefficientTable
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Matrices = tuple[Array, Array, Array]
 
-JOURNAL = ("x", "y", "theta_x", "theta_y")
+_JOURNAL = ("x", "y", "theta_x", "theta_y")
 """Unknowns of a bearing that are its node's."""
 _SPEED_TOLERANCE = 1e-9
 """Relative; two speeds nearer than this are the same one written in different units."""
@@ -206,12 +208,33 @@ class MatrixTable(Support):
             raise InputError("has no matrices over journal and pads", key="table")
         if one["kxx"].size != one["speed"].size:
             raise InputError("must be narrowed to one curve over speed", key="table")
-        speeds, names = one["speed"].values, [str(name) for name in one["unknown"].values]
-        shape = (speeds.size, len(names), len(names))
-        k, c, m = (
-            one[name].values.reshape(shape)
-            for name in ("full_stiffness", "full_damping", "full_mass")
-        )
+        names = [str(name) for name in one["unknown"].values]
+        shape = (one["speed"].size, len(names), len(names))
+        matrices = [one[name].values.reshape(shape) for name in PAD_MATRICES]
+        return cls._over(one["speed"].values, names, np.stack(matrices))
+
+    @classmethod
+    def of_points(cls, points: Sequence[OperatingPoint], angles: Sequence[float]) -> MatrixTable:
+        """Return the same of operating points over speed, each turned by its angle [rad].
+
+        The angle leads from the machine's x to the point's load.
+        """
+        fulls = [point.coefficients_full for point in points]
+        names = list(dict.fromkeys(name for full in fulls if full for name in full.names))
+        matrices = np.full((3, len(points), len(names), len(names)), np.nan)
+        for place, (full, angle) in enumerate(zip(fulls, angles, strict=True)):
+            if full is None:
+                continue
+            at = np.array([names.index(name) for name in full.names])
+            turn = _turning(full.names, angle)
+            for kind, matrix in enumerate((full.stiffness, full.damping, full.mass)):
+                matrices[kind, place, at[:, None], at] = turn.T @ matrix @ turn
+        return cls._over(np.array([point.speed for point in points]), names, matrices)
+
+    @classmethod
+    def _over(cls, speeds: Array, names: list[str], matrices: Array) -> MatrixTable:
+        """Keep the unknowns that are there at all speeds; eliminate the others, synchronously."""
+        k, c, m = matrices
         moving: NDArray[np.bool_] = np.isfinite(np.diagonal(k, axis1=1, axis2=2))
         if not moving[:, :2].all():
             raise InputError("holds points that did not converge", key="table")
@@ -229,7 +252,7 @@ class MatrixTable(Support):
             kept[0, place] += change.real
             kept[1, place] += change.imag / float(speed)
         unknowns = tuple(names[place] for place in own)
-        coupled = sum(name in JOURNAL for name in unknowns)
+        coupled = sum(name in _JOURNAL for name in unknowns)
         return cls(speeds, *kept, unknowns=unknowns, coupled=coupled)
 
     @property
@@ -372,14 +395,7 @@ class Turned(Support):
     @property
     def _turn(self) -> Array:
         """From the machine's unknowns to the inner support's."""
-        turn = np.eye(len(self.unknowns))
-        c, s = np.cos(self.angle), np.sin(self.angle)
-        for first, second in (("x", "y"), ("theta_x", "theta_y"), ("housing_x", "housing_y")):
-            if first in self.unknowns:
-                i, j = self.unknowns.index(first), self.unknowns.index(second)
-                turn[i, i] = turn[j, j] = c
-                turn[i, j], turn[j, i] = s, -s
-        return turn
+        return _turning(self.unknowns, self.angle)
 
     def matrices(self, speed: ArrayLike) -> Matrices:
         """Matrices in the machine's frame."""
@@ -390,6 +406,18 @@ class Turned(Support):
     def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
         """Force per displacement in the machine's frame."""
         return self._turn.T @ self.inner.dynamic_stiffness(s, speed) @ self._turn
+
+
+def _turning(unknowns: Sequence[str], angle: float) -> Array:
+    """From unknowns to those of a frame turned by `angle` [rad] from x towards y."""
+    turn = np.eye(len(unknowns))
+    c, s = np.cos(angle), np.sin(angle)
+    for first, second in (("x", "y"), ("theta_x", "theta_y"), ("housing_x", "housing_y")):
+        if first in unknowns:
+            i, j = unknowns.index(first), unknowns.index(second)
+            turn[i, i] = turn[j, j] = c
+            turn[i, j], turn[j, i] = s, -s
+    return turn
 
 
 def _square(value: ArrayLike, size: int, name: str) -> Array:

@@ -21,7 +21,14 @@ from ..machine.machine import Machine, Mount
 from ..machine.modes import known_speeds, machine_spectrum, modes
 from ..machine.response import UnbalanceResponse, unbalance_response
 from ..machine.statics import Law, StaticEquilibrium, static_equilibrium, weight
-from ..machine.support import ConstantSupport, Pedestal, Support, TableSupport, Turned
+from ..machine.support import (
+    ConstantSupport,
+    MatrixTable,
+    Pedestal,
+    Support,
+    TableSupport,
+    Turned,
+)
 from ..machine.thresholds import (
     CriticalSpeed,
     ThresholdSpeed,
@@ -466,8 +473,10 @@ def _displaced(journal: Array) -> Law:
 
 def _film_support(speeds: Array, state: SupportState) -> Support:
     """Coefficients of a film's points over speed, turned to the machine's frame."""
-    columns = np.full((speeds.size, 9), np.nan)
     converged = np.array([point.converged for point in state.points])
+    if converged.all() and all(point.pads for point in state.points):
+        return MatrixTable.of_points(state.points, [float(angle) for angle in state.direction])
+    columns = np.full((speeds.size, 9), np.nan)
     for k, (point, angle) in enumerate(zip(state.points, state.direction, strict=True)):
         if point.converged:
             turn = _rotation(float(angle))

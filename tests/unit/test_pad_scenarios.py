@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import rotorsim as rs
+from rotorsim.bearing.solve import solve_case
 from rotorsim.bearing.table import CoefficientTable
 from rotorsim.errors import InputError, ScenarioError
 from rotorsim.files.scenario import Scenario
@@ -161,6 +162,19 @@ def test_a_machine_stands_on_the_pads(table):
         np.testing.assert_allclose(reduced.imag, expected, rtol=1e-9, atol=1.0)
     machine = Machine.on_identical(Rotor.rigid(500.0), support)
     assert np.linalg.eigvals(machine.state_matrix(table.speeds[0])).real.max() < 0.0
+
+
+@pytest.mark.parametrize("angle_deg", [0.0, 40.0])
+def test_points_over_speed_make_the_same_support_turned_to_the_machine(table, angle_deg: float):
+    case = scenario(FIVE + 'preload = 0.3\nload = "on_pad"\n').case(100e-6)
+    points = [solve_case(case, float(speed))[0] for speed in table.speeds]
+    angle = math.radians(angle_deg)
+    turned = MatrixTable.of_points(points, [angle] * len(points))
+    straight = MatrixTable.of_pads(table, radial_clearance=100e-6)
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    speed = float(table.speeds[0])
+    ours, theirs = (_reduced(one, 0.4j * speed, speed) for one in (turned, straight))
+    np.testing.assert_allclose(ours, turn @ theirs @ turn.T, rtol=1e-6, atol=1e-6 * abs(ours).max())
 
 
 def _reduced(support: MatrixTable, s: complex, speed: float) -> np.ndarray:
