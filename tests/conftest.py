@@ -1,4 +1,4 @@
-"""Hypothesis profiles: a quick one by default, a patient one for nightly runs."""
+"""Hypothesis profiles: quick without slow tests, one by default, a patient one for nightly runs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,14 @@ settings.register_profile(
     "ci", max_examples=200, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.register_profile("nightly", parent=settings.get_profile("ci"), max_examples=2000)
+settings.register_profile("quick", parent=settings.get_profile("ci"), max_examples=30)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "ci"))
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Take fewer random examples where slow tests are left out."""
+    if config.option.markexpr == "not slow" and "HYPOTHESIS_PROFILE" not in os.environ:
+        settings.load_profile("quick")
 
 
 def pytest_report_header() -> str:

@@ -136,6 +136,7 @@ def test_version(here):
     assert re.fullmatch(r"rotorsim \d+\.\d+\.\d+\n", done.stdout)
 
 
+@pytest.mark.slow
 def test_solve_prints_every_key_of_the_contract_in_json(tiny, here):
     done = here("solve", tiny, "--json", "--speed", "12000 rpm")
     assert done.returncode == 0, done.stderr
@@ -159,6 +160,7 @@ def test_solve_shows_results_on_stdout_and_progress_on_stderr(tiny, here):
     assert "film points" not in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["solve", "check"])
 def test_quiet_is_silent(command, tiny, here):
     done = here(command, tiny, "--quiet")
@@ -203,6 +205,7 @@ def test_cooled_walls_are_named_with_what_they_take(tiny, here):
     assert re.search(r"heat through the walls +[5-9]\d +%", done.stdout)
 
 
+@pytest.mark.slow
 def test_table_is_written_with_its_scenario_and_no_journal_is_left(tabulated):
     import xarray
 
@@ -213,6 +216,7 @@ def test_table_is_written_with_its_scenario_and_no_journal_is_left(tabulated):
         assert dataset.sizes == {"thermal_model": 2, "radial_clearance": 1, "speed": 4}
 
 
+@pytest.mark.slow
 def test_stability_of_a_table(tabulated):
     done = rotorsim("stability", "coefficients/tiny.nc", "--json", cwd=tabulated)
     assert done.returncode == 0, done.stderr
@@ -227,6 +231,7 @@ def test_stability_of_a_table(tabulated):
     assert len(crossed["thd"]) == 1
 
 
+@pytest.mark.slow
 def test_mass_on_the_command_line_overrides_the_scenario(tabulated):
     arguments = ("stability", "coefficients/tiny.nc", "--mass", "100 kg", "--json")
     said = strict(rotorsim(*arguments, cwd=tabulated).stdout)
@@ -234,6 +239,7 @@ def test_mass_on_the_command_line_overrides_the_scenario(tabulated):
     assert all(max(curve["growth_rate"]) < 0.0 for curve in said["curves"])
 
 
+@pytest.mark.slow
 def test_orbit_grows_with_heating_and_decays_without_as_the_eigenvalues_say(tabulated):
     done = rotorsim("orbit", "tiny.toml", "-t", "coefficients/tiny.nc", "--json", cwd=tabulated)
     assert done.returncode == 0, done.stderr
@@ -246,6 +252,7 @@ def test_orbit_grows_with_heating_and_decays_without_as_the_eigenvalues_say(tabu
         assert orbit["growth_rate"] == pytest.approx(growth[orbit["thermal_model"]], rel=0.01)
 
 
+@pytest.mark.slow
 def test_export_to_csv_reads_back_as_the_same_table(tabulated):
     done = rotorsim("export", "coefficients/tiny.nc", "--to", "csv", "--json", cwd=tabulated)
     assert done.returncode == 0, done.stderr
@@ -311,6 +318,7 @@ def test_bad_scenarios_end_with_2_and_one_readable_message(fault, command, tiny,
     assert os.listdir(tmp_path) == ["tiny.toml"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -351,6 +359,7 @@ def test_unknown_options_end_with_2(here):
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.slow
 def test_run_does_the_whole_job(tiny, tmp_path):
     done = rotorsim("run", tiny, "--output", "out", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -385,6 +394,7 @@ def test_run_does_the_whole_job(tiny, tmp_path):
         assert orbit["growth_rate"] == pytest.approx(orbit["eigenvalue_growth_rate"], rel=0.01)
 
 
+@pytest.mark.slow
 def test_run_shows_a_summary_that_fits_the_terminal(tiny, here):
     done = here("run", tiny)
     assert done.returncode == 0, done.stderr
@@ -397,6 +407,7 @@ def test_run_shows_a_summary_that_fits_the_terminal(tiny, here):
     assert max(map(len, table.splitlines())) <= 90
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_an_interruption_says_what_is_kept_and_the_next_run_resumes(tmp_path):
     path = tmp_path / "long.toml"

@@ -44,6 +44,7 @@ def here(here: CommandLine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     return here
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", ["lqr", "pd"])
 def test_design_without_a_run_in_time(here, design):
     done = here("control", "small.toml", "--design", design, "--revolutions", "0", "--json")
@@ -71,6 +72,7 @@ def test_bad_arguments(here):
             assert word in done.stderr
 
 
+@pytest.mark.slow
 def test_held_with_enough_force_and_lost_with_too_little(here):
     small = ("--disturbance", "0.2 um", "-o", "figures")
     done = here("control", "small.toml", "--max-force", "1 kN", *small)

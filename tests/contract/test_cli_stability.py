@@ -65,6 +65,7 @@ def shaft_arrays(**changes):
     return {**arrays, **changes}
 
 
+@pytest.mark.slow
 def test_modes_over_speed_in_json(here, tmp_path):
     (tmp_path / "own.csv").write_text(csv_text())
     done = here("stability", "own.csv", "--mass", "900 kg", "--json")
@@ -102,6 +103,7 @@ def test_modes_are_shown_with_their_whirl_and_threshold(here):
         assert Path(f"figures/campbell.{kind}").stat().st_size > 5000
 
 
+@pytest.mark.slow
 def test_a_general_rotor_from_npz_and_mat(here, tmp_path):
     import scipy.io
 
@@ -129,6 +131,7 @@ def test_a_general_rotor_from_npz_and_mat(here, tmp_path):
     assert moved["speed"] != pytest.approx(threshold["speed"], rel=0.01)
 
 
+@pytest.mark.slow
 def test_damping_called_c_gives_the_same_verdict(here):
     arrays = shaft_arrays(D=4e3 * np.eye(36))
     np.savez("d.npz", **arrays)
@@ -183,6 +186,7 @@ def test_a_flexible_shaft_lowers_the_threshold(here):
     assert speeds[0] > speeds[1] > speeds[2]
 
 
+@pytest.mark.slow
 def test_map_over_speed_and_load_is_solved_from_the_scenario(here):
     done = here(
         "stability", "small.toml", "--x", "speed", "--y", "load", "--y-values", "5 kN : 20 kN : 4",
@@ -242,6 +246,7 @@ def test_map_of_a_table(here):
     )
 
 
+@pytest.mark.slow
 def test_tolerances_of_the_scenario_and_of_the_command_line(here):
     done = here("stability", "small.toml", "--tolerances", "--workers", "1", "--json")
     assert done.returncode == 0, done.stderr
@@ -261,6 +266,7 @@ def test_tolerances_of_the_scenario_and_of_the_command_line(here):
     assert Path("figures/tolerances.svg").exists()
 
 
+@pytest.mark.slow
 def test_inputs_go_by_both_of_their_names(here):
     found = []
     for x, y, spread in (
@@ -285,6 +291,7 @@ def test_inputs_go_by_both_of_their_names(here):
     assert found[0] == found[1]
 
 
+@pytest.mark.slow
 def test_a_table_brings_its_scenario_to_the_tolerances(here):
     solved = here("table", "small.toml", "--workers", "1", "-o", "small.nc", "-q")
     assert solved.returncode == 0, solved.stderr

@@ -50,6 +50,7 @@ def runner() -> ModuleType:
 run_page = runner()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", EXECUTED, ids=lambda page: page.stem)
 def test_page_does_what_it_shows(page, tmp_path, monkeypatch):
     for name, value in run_page.LIKE_A_TERMINAL.items():
@@ -79,6 +80,7 @@ def test_outputs_are_compared(found, shown, same):
     assert run_page.agree(found, shown) is same
 
 
+@pytest.mark.slow
 def test_a_page_that_tells_something_else_is_found(tmp_path, monkeypatch):
     page = tmp_path / "page.md"
     page.write_text("```python\nprint(2.5)\n```\n\n```text\n3.5\n```\n", encoding="utf-8")
@@ -103,11 +105,13 @@ def site(tmp_path_factory) -> Path:
     return target / "html"
 
 
+@pytest.mark.slow
 def test_site_builds_without_warnings_and_holds_every_page(site):
     for page in PAGES:
         assert (site / page.relative_to(DOCS).with_suffix(".html")).is_file(), page
 
 
+@pytest.mark.slow
 def test_pages_ask_no_other_host_for_anything(site):
     """Links may lead away; what a page loads (scripts, styles, fonts, pictures) comes with it."""
     for page in site.glob("**/*.html"):
@@ -120,6 +124,7 @@ def test_pages_ask_no_other_host_for_anything(site):
         assert not re.search(r"url\(['\"]?(https?:)?//", sheet.read_text(encoding="utf-8")), sheet
 
 
+@pytest.mark.slow
 def test_equations_are_drawn_by_the_browser_alone(site):
     text = (site / "theory" / "pressure.html").read_text(encoding="utf-8")
     assert text.count("<math") > 20

@@ -64,6 +64,7 @@ def test_json_says_what_the_orbit_comes_to(call, tmp_path):
     assert not (tmp_path / "coefficients").exists()  # a nonlinear film needs no table
 
 
+@pytest.mark.slow
 def test_pictures_are_written_where_asked(call, tmp_path):
     from PIL import Image
 
@@ -88,6 +89,7 @@ def test_pictures_are_written_where_asked(call, tmp_path):
     assert not list(folder.glob(".*"))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg (Debian: ffmpeg)")
 def test_a_film_for_slides_can_be_played(call, tmp_path):
     done = call("small.toml", "--mp4")
@@ -121,6 +123,7 @@ def test_what_cannot_be_done_is_said_at_once(call, monkeypatch, words, said):
     assert said in " ".join(done.stderr.split())
 
 
+@pytest.mark.slow
 def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
     import rerun as rr
     from rerun.chunk import RrdReader
@@ -169,6 +172,7 @@ def test_pieces_sent_to_a_viewer_make_up_the_whole_run(tmp_path: Path):
 LINEAR = TEXT.replace('force = "film"', 'force = "linear"')
 
 
+@pytest.mark.slow
 def test_coefficients_of_another_program_run_in_time(call, here, tmp_path):
     """A table without positions or clearances: the same growth as with them."""
     (tmp_path / "linear.toml").write_text(LINEAR, encoding="utf-8")

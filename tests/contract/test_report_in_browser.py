@@ -11,7 +11,10 @@ from rotorsim.show.report import write_report
 from rotorsim.study.main_job import compute
 from rotorsim.study.sweep import as_table, sweep_points
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="needs Debian's package chromium")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(CHROMIUM is None, reason="needs Debian's package chromium"),
+]
 
 
 @pytest.fixture(scope="module")

@@ -63,6 +63,7 @@ READERS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("command", "kind"), READERS)
 @pytest.mark.parametrize("name", USELESS)
 def test_useless_files_are_refused_by_name(command, kind, name, nonsense, tmp_path):
@@ -263,6 +264,7 @@ print(json.dumps({"kills": kills, "told": len(told_in_all), "same": same}))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="POSIX processes")
 def test_killing_a_sweep_twenty_times_loses_no_finished_point(tmp_path):
     scenario = tmp_path / "long.toml"
@@ -354,6 +356,7 @@ def test_pipes_and_long_names_are_refused_at_once(suffix, nonsense, tmp_path):
         assert done.returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX")
 def test_a_file_size_limit_ends_with_a_message_and_the_old_table(good_table, tmp_path):
     shutil.copy(good_table, tmp_path / "good.nc")

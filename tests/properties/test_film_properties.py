@@ -103,6 +103,7 @@ def test_load_rises_with_eccentricity(eps, step, cavitation):
     assert more.min_film_thickness < less.min_film_thickness
 
 
+@pytest.mark.slow
 @few
 @given(eps=st.floats(0.05, 0.4), bore=bores, cavitation=st.sampled_from(["reynolds", "jfo"]))
 def test_damping_of_an_isoviscous_film_is_symmetric_and_positive(eps, bore, cavitation):
@@ -123,6 +124,7 @@ def test_a_plain_bearing_looks_the_same_from_everywhere(eps, angle):
     np.testing.assert_allclose(turned.stiffness, straight.stiffness, rtol=1e-8)
 
 
+@pytest.mark.slow
 @few
 @given(eps=st.floats(0.05, 0.4), attitude=angles, angle=angles, bore=bores)
 def test_turning_bearing_and_journal_together_turns_the_force(eps, attitude, angle, bore):
@@ -148,6 +150,7 @@ def test_turning_bearing_and_journal_together_turns_the_force(eps, attitude, ang
         np.testing.assert_allclose(found, wanted, atol=1e-6 * np.abs(wanted).max())
 
 
+@pytest.mark.slow
 @settings(few, max_examples=12)
 @given(
     eps=st.floats(0.1, 0.6),
@@ -173,6 +176,7 @@ def test_mirrored_misalignment_is_the_same_bearing_seen_from_the_other_end(
     )
 
 
+@pytest.mark.slow
 @settings(few, max_examples=12)
 @given(eps=st.floats(0.1, 0.8), bore=st.sampled_from(["grooved", "elliptical"]))
 def test_vanishing_misalignment_is_none(eps, bore):
@@ -188,6 +192,7 @@ def test_vanishing_misalignment_is_none(eps, bore):
     )
 
 
+@pytest.mark.slow
 @settings(few, max_examples=12)
 @given(eps=st.floats(0.1, 0.9), direction=angles, by_load=st.booleans())
 def test_a_plain_bearing_forgets_a_vanishing_misalignment(eps, direction, by_load):
@@ -203,6 +208,7 @@ def test_a_plain_bearing_forgets_a_vanishing_misalignment(eps, direction, by_loa
     assert full.side_flow == pytest.approx(half.side_flow, rel=0.01)
 
 
+@pytest.mark.slow
 @few
 @given(load=st.floats(50.0, 2e4), bore=bores, cavitation=ruptures)
 def test_a_converged_point_carries_its_load(load, bore, cavitation):
@@ -217,6 +223,7 @@ def test_a_converged_point_carries_its_load(load, bore, cavitation):
     np.testing.assert_allclose(force, [-load, 0.0], atol=1e-6 * load)
 
 
+@pytest.mark.slow
 @few
 @given(eps=st.floats(0.1, 0.7), bore=bores, cavitation=st.sampled_from(["reynolds", "jfo"]))
 def test_oil_is_conserved(eps, bore, cavitation):
@@ -257,6 +264,7 @@ thermal_conditions = st.fixed_dictionaries(
 )
 
 
+@pytest.mark.slow
 @settings(few, max_examples=80)
 @given(
     eps=st.floats(0.05, 0.9),
@@ -301,6 +309,7 @@ def test_heat_balance_of_whatever_converges(
     assert point.heat_imbalance == heat.imbalance
 
 
+@pytest.mark.slow
 @few
 @given(
     load=st.floats(1e-3, 1e7),

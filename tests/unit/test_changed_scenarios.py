@@ -85,6 +85,7 @@ def test_a_pint_quantity_is_refused() -> None:
         SCENARIO.replace(load=pint.UnitRegistry().Quantity(3.0, "kN"))
 
 
+@pytest.mark.slow
 def test_any_clearance_load_speed_and_oil_temperature_is_solved() -> None:
     text = SMALL.replace("[operating]", '[thermal]\nambient_temperature = "40 degC"\n[operating]')
     scenario = Scenario.from_text(text)

@@ -40,6 +40,7 @@ def sources(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_cache_follows_what_is_called_and_its_constants(sources: Path):
     assert run(sources).stdout.split() == ["8.0", "0", "1"]
     assert run(sources, PYTHONHASHSEED="5").stdout.split() == ["8.0", "1", "0"]
@@ -57,12 +58,14 @@ def test_the_cache_follows_what_is_called_and_its_constants(sources: Path):
     assert run(sources).stdout.split() == ["10.0", "1", "0"]
 
 
+@pytest.mark.slow
 def test_the_cache_follows_the_options(sources: Path):
     run(sources)
     (sources / "calls.py").write_text(CALLS.format("fastmath=True"))
     assert run(sources).stdout.split() == ["8.0", "0", "1"]
 
 
+@pytest.mark.slow
 def test_a_damaged_cache_counts_as_missing(sources: Path):
     run(sources)
     for entry in (sources / "__pycache__").glob("*.nb?"):
@@ -72,6 +75,7 @@ def test_a_damaged_cache_counts_as_missing(sources: Path):
     assert run(sources).stdout.split() == ["8.0", "0", "1"]
 
 
+@pytest.mark.slow
 def test_without_a_folder_code_is_compiled_anew_and_that_is_said_once(sources: Path):
     """Files where folders should be stand for folders that nobody may write to."""
     (sources / "nowhere").touch()

@@ -275,6 +275,7 @@ def coarse() -> Results:
     return collect(TINY, todo, [solve_job(job) for job in todo])
 
 
+@pytest.mark.slow
 def test_every_claim_is_decided_on_a_very_coarse_mesh(coarse):
     judged = {row.claim.key: row for row in assess(coarse)}
     assert coarse.not_converged() == []

@@ -214,6 +214,7 @@ def test_the_curve_is_that_of_the_mode_that_is_driven():
     assert curve.frequency[0] == pytest.approx(lowest, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_shares_of_several_places_are_kept():
     machine = beam_machine()
     middle, end = node_at(machine.rotor, 0.6), node_at(machine.rotor, 0.3)
@@ -266,6 +267,7 @@ def test_an_overhung_mode_takes_the_overhung_mass():
     assert 60.0 < plane.mass < 60.0 + 7830 * 0.3 * np.pi * 0.04**2 * 1.2
 
 
+@pytest.mark.slow
 def test_critical_speed_map_between_its_asymptotes():
     beam = Beam((Section(1.2, 0.05),), (Disc(0.6, 20.0, 0.1, 0.06),))
     rotor = beam_rotor(beam, [0.0, 1.2])

@@ -72,6 +72,7 @@ def test_a_point_knows_its_moments_from_json():
     np.testing.assert_array_equal(full.damping, found.coefficients_full.damping)
 
 
+@pytest.mark.slow
 def test_tables_hold_the_full_matrices_where_asked_for(tmp_path):
     found = point(misalignment=(2e-4, 1e-4))
     table = CoefficientTable.from_points([found])

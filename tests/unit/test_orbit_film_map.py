@@ -155,6 +155,7 @@ def test_closest_film_against_the_thickness_on_a_fine_mesh(bearing):
         assert exact - 1e-9 < found[k] < exact + (2e-7 if bearing.grooves else 5e-9)
 
 
+@pytest.mark.slow
 def test_a_long_run_keeps_its_end_only_and_what_was_thinnest_before():
     force = ShortBearingForce(0.0277, 0.025, 0.05, 1e-4)
     problem = OrbitProblem(

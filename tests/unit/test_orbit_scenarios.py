@@ -77,6 +77,7 @@ def test_the_kind_follows_from_what_is_there(lines, kind):
     assert settings.kind is kind
 
 
+@pytest.mark.slow
 def test_the_kind_of_a_ramp():
     for first, last, kind in ((6000, 9000, "run_up"), (9000, 6000, "coast_down")):
         ramp = f'{{ start = "{first} rpm", stop = "{last} rpm", duration = "2 s", hold = "1 s" }}'
@@ -212,6 +213,7 @@ def test_description_of_an_unbalanced_orbit():
     assert said["note"] in orbit.message
 
 
+@pytest.mark.slow
 def test_oil_whip_locks_to_the_natural_frequency():
     orbit = simulate_orbit(load_scenario(SCENARIOS / "orbit_oil_whip.toml"))
     found = analyse(orbit).whirl_range

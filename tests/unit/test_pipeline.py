@@ -46,6 +46,7 @@ def points(scenario):
     return sweep_points(list(scenario.cases()), [float(s) for s in scenario.speeds], workers=1)
 
 
+@pytest.mark.slow
 def test_threshold_speed_is_where_the_critical_mass_is_the_rotors(scenario, points):
     """Isothermal, fixed eccentricity: the film scales, and M_cr = a/omega exactly."""
     table = as_table(points, scenario)
@@ -95,6 +96,7 @@ def test_a_step_that_fails_costs_itself_alone():
     assert attempt.problems[1] == "third: rotor.mass: must be more (found: 0)"
 
 
+@pytest.mark.slow
 def test_nothing_computed_is_lost_when_a_later_step_fails(scenario, points, tmp_path, monkeypatch):
     def fail(*_arguments, **_options):
         raise FloatingPointError("no orbit today")

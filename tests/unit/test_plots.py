@@ -105,6 +105,7 @@ def test_coefficients_and_thresholds_over_speed(coefficients):
     assert line.get_label() == "THD, c = 100 µm"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FIGURES)
 def test_every_figure_is_saved_with_named_axes(name, tmp_path):
     figure = FIGURES[name]()

@@ -99,6 +99,7 @@ def column(file, entity, ending, timeline="time"):
     return index[order], [rows[i] for i in order]
 
 
+@pytest.mark.slow
 def test_verify_accepts_the_file(written):
     program = str(viewer.viewer_program())
     done = subprocess.run([program, "rrd", "verify", str(written[0])], capture_output=True)

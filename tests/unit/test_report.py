@@ -92,6 +92,7 @@ def test_a_map_in_notebooks_says_how_much_of_it_is_stable(results):
     assert re.search(r"isothermal (33.3|66.7|0.0|100.0) %", shown)
 
 
+@pytest.mark.slow
 def test_the_page_is_whole_and_refers_to_nothing_outside(results, tmp_path):
     path = write_report(results, tmp_path / "new" / "report.html")
     page = path.read_text(encoding="utf-8")
@@ -102,6 +103,7 @@ def test_the_page_is_whole_and_refers_to_nothing_outside(results, tmp_path):
     assert "@media print" in page
 
 
+@pytest.mark.slow
 def test_the_page_says_what_was_computed(results, points):
     date = datetime.datetime(2001, 2, 3, 4, 5, tzinfo=datetime.UTC)
     said = words_of(report_page(results, date))
@@ -136,6 +138,7 @@ def test_log_decrement_is_that_of_successive_swings(results):
     assert log_decrement(still) is None
 
 
+@pytest.mark.slow
 def test_stable_incomplete_and_unknown_are_told_apart(results, points, scenario):
     table = results.table
     light = replace(results, curves=tuple(stability_curves(table, 10.0)))
@@ -160,6 +163,7 @@ def test_stable_incomplete_and_unknown_are_told_apart(results, points, scenario)
     assert "nan" not in said
 
 
+@pytest.mark.slow
 def test_the_headline_names_range_changes_and_extremes(results, points):
     said = words_of(report_page(results))
     (curve,) = results.curves
@@ -206,6 +210,7 @@ ambient_temperature = "40 degC"
     assert re.search(r"\de\+0[3-5]", said.split("Appendix C")[0]) is None
 
 
+@pytest.mark.slow
 def test_a_rigid_rotor_needs_no_such_words(results):
     said = words_of(report_page(results))
     assert "do not hold for" not in said

@@ -33,6 +33,7 @@ def table(tmp_path):
     return CoefficientTable.from_csv(path)
 
 
+@pytest.mark.slow
 def test_every_cell_agrees_with_eigenvalues_and_closed_form(table):
     masses = np.geomspace(30.0, 3e5, 25)
     data = stability_map(table, masses).dataset

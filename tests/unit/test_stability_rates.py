@@ -47,6 +47,7 @@ KINDS = ["any", "film", "SI", "light", "heavy", "nearly alike modes", "symmetric
          "isotropic whirl", "uncoupled"]  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_same_values_as_the_dense_solver(kind):
     k, c, mass = coefficients(kind)

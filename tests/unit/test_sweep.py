@@ -305,6 +305,7 @@ def script(tmp_path):
     return start
 
 
+@pytest.mark.slow
 def test_processes_serve_a_plain_script(script, tmp_path):
     process = script(pause=0.05)
     out, err = process.communicate(timeout=60)
@@ -314,6 +315,7 @@ def test_processes_serve_a_plain_script(script, tmp_path):
     assert len(pids) == 2
 
 
+@pytest.mark.slow
 def test_a_point_that_kills_its_process_costs_itself_alone(script):
     process = script(deadly=(SPEEDS[2],))
     out, err = process.communicate(timeout=90)
@@ -323,6 +325,7 @@ def test_a_point_that_kills_its_process_costs_itself_alone(script):
     assert len(rows_of(out)) == len(EXPECTED)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 @pytest.mark.parametrize("how", ["SIGKILL", "SIGINT"])
 def test_killing_a_sweep_loses_no_finished_chunk_and_leaves_no_orphan(script, tmp_path, how):

@@ -244,6 +244,7 @@ def test_damaged_block_is_noticed(table, tmp_path):
         CoefficientTable.load(path)
 
 
+@pytest.mark.slow
 def test_foreign_files_are_refused(table, tmp_path):
     import xarray as xr
 
@@ -269,6 +270,7 @@ def test_foreign_files_are_refused(table, tmp_path):
             CoefficientTable.load(path)
 
 
+@pytest.mark.slow
 def test_no_flipped_bit_changes_a_table(table, tmp_path):
     """Refused, or in the checksum's own name and then without effect."""
     path = table.save(tmp_path / "t.nc")
@@ -303,6 +305,7 @@ def test_a_flipped_bit_shows_without_the_checksum_of_the_file_too(table, tmp_pat
         CoefficientTable.load(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("attributes", "message"),
     [

@@ -52,6 +52,7 @@ def second_method(*, center: float, extent: float, supply: float = 0.0, share: f
     )
 
 
+@pytest.mark.slow
 def test_equilibrium_with_a_groove_ahead_of_the_load():
     solution = solve_film(grooved(LoadTarget(20e3), center=45.0, extent=20.0), SPEED)
     assert solution.status is SolveStatus.CONVERGED
@@ -65,6 +66,7 @@ def test_equilibrium_with_a_groove_ahead_of_the_load():
     assert math.atan2(y, x) == pytest.approx(attitude, abs=math.radians(0.05))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("supply", [0.0, 100e3])
 def test_equilibria_with_a_groove_anywhere_but_under_the_load(supply):
     """The position found carries the load in the second method as well."""
@@ -79,6 +81,7 @@ def test_equilibria_with_a_groove_anywhere_but_under_the_load(supply):
         assert force * UNIT == pytest.approx([-20e3, 0.0], abs=0.03 * 20e3), center
 
 
+@pytest.mark.slow
 def test_no_equilibrium_with_a_groove_under_the_load():
     """No position is found, and the second method's force points beside the groove everywhere."""
     solution = solve_film(grooved(LoadTarget(20e3), center=0.0, extent=20.0), SPEED)

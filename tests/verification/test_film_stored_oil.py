@@ -85,6 +85,7 @@ def test_a_march_in_time_gives_the_second_method_s_dynamic_stiffness():
     assert limit == pytest.approx(expected, abs=0.01 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 def test_dynamic_stiffness_equals_the_second_method_s(film, second):
     other, place = second
     assert np.array(film.state.displacement) / CLEARANCE == pytest.approx(place, abs=2e-4)

@@ -68,6 +68,7 @@ def run(film: LoadedFilm, mass: float, kick: float, revolutions: float, **change
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cavitation", ["reynolds", "half_sommerfeld"])
 def test_map_against_the_film_solved_at_any_position_and_velocity(cavitation, monkeypatch):
     """The film turns and is squeezed here; the map knows a squeeze film only."""
@@ -110,6 +111,7 @@ def test_map_near_the_bush_against_the_film_solved(eps, velocity):
     assert np.hypot(*(found - exact)) < 1e-2 * np.hypot(*exact)
 
 
+@pytest.mark.slow
 def test_the_orbit_rests_where_the_solver_finds_the_equilibrium():
     """Heavily loaded and slow: eccentricity ratio 0.99, 1 % of the clearance left."""
     film = isothermal_case(
@@ -174,6 +176,7 @@ def test_an_anchored_film_is_no_function_of_eccentricity_and_squeeze_direction_a
     assert not can_be_mapped(thermal_case(inception="free"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("factor", [0.6, 1.5])
 def test_small_motions_on_the_map_follow_the_films_own_eigenvalue(factor):
     point, _ = solve_case(case(mesh=(256, 96)), SPEED)
@@ -231,6 +234,7 @@ def cycle():
     return run(loaded_film(case(), SPEED), 135.0, 0.4, 300.0)
 
 
+@pytest.mark.slow
 def test_limit_cycle_on_the_map_against_the_film_solved_at_each_step(cycle):
     """Start the direct solution on the map's cycle: it must stay there, at the same pace."""
     assert cycle.status is OrbitStatus.LIMIT_CYCLE
@@ -254,6 +258,7 @@ def phase_turned(orbit) -> float:
     return float(np.unwrap(np.angle(orbit.x + 1j * orbit.y - middle))[-1])
 
 
+@pytest.mark.slow
 def test_whirl_just_past_the_threshold_keeps_the_linear_ratio():
     point, _ = solve_case(case(mesh=(256, 96)), SPEED)
     assert point.critical_mass is not None
@@ -268,6 +273,7 @@ def test_whirl_just_past_the_threshold_keeps_the_linear_ratio():
     assert found.whirl.semi_minor > 0.0  # forward
 
 
+@pytest.mark.slow
 def test_subcritical_film_holds_two_motions_at_one_mass():
     film = loaded_film(case(400.0), SPEED)
     assert run(film, 35.0, -0.02, 400.0).status is OrbitStatus.SETTLED

@@ -72,6 +72,7 @@ def test_free_motion_against_the_matrix_exponential(method, factor):
     np.testing.assert_allclose(orbit.y + 1e-5, exact[:, 1], atol=1e-6 * 2e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("unbalance", [0.0, 5e-4])
 @pytest.mark.parametrize("factor", [0.5, 0.97, 1.03, 1.5])
 def test_growth_and_frequency_equal_the_eigenvalue(factor, unbalance):
@@ -228,6 +229,7 @@ def test_coefficients_by_speed_are_followed_through_a_run_up():
     assert form.table.shape == (512, 4, 10)
 
 
+@pytest.mark.slow
 def test_flexible_rotor_whirls_at_its_systems_eigenvalue():
     disk, journal, shaft = 300.0, 20.0, 8e7
     stiffness, damping = 6e7 * np.array([[1.0, 0.5], [-0.5, 1.0]]), 8e4 * np.eye(2)

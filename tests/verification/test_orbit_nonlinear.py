@@ -125,6 +125,7 @@ def test_small_motions_follow_the_eigenvalue(force, factor):
     assert growth.frequency == pytest.approx(exact.imag, rel=5e-4)
 
 
+@pytest.mark.slow
 def test_limit_cycle_past_the_threshold_whirls_near_the_linear_ratio():
     orbit = whirl(0.4, 1.02, 0.15, 600)
     linear = operating_point(0.4)[-1]
@@ -135,6 +136,7 @@ def test_limit_cycle_past_the_threshold_whirls_near_the_linear_ratio():
     assert 0.05 < swing(orbit) < 0.3
 
 
+@pytest.mark.slow
 def test_supercritical_amplitude_grows_as_the_root_of_the_distance():
     # Hopf bifurcation with a stable branch: amplitude^2 proportional to the distance at first
     small, large = (swing(whirl(0.4, 1.0 + d, 0.1, 1200 * 0.01 / d)) for d in (0.01, 0.02))
@@ -143,6 +145,7 @@ def test_supercritical_amplitude_grows_as_the_root_of_the_distance():
     assert whirl(0.4, 0.9, 0.5, 300).status is OrbitStatus.SETTLED
 
 
+@pytest.mark.slow
 def test_subcritical_light_load_keeps_a_large_cycle_below_the_threshold():
     # two attractors at one mass: a small kick dies out, a large one is caught by the cycle
     caught = whirl(0.05, 0.98, 0.8, 500)
@@ -154,6 +157,7 @@ def test_subcritical_light_load_keeps_a_large_cycle_below_the_threshold():
     assert np.ptp(last.x) < 0.5 * np.ptp(first.x)
 
 
+@pytest.mark.slow
 def test_limit_cycle_on_the_map_equals_the_closed_form():
     closed, mapped = (whirl(0.5, 1.05, 0.3, 400, force) for force in (CLOSED, MAPPED))
     assert closed.status is mapped.status is OrbitStatus.LIMIT_CYCLE
@@ -204,6 +208,7 @@ def test_touch_down_on_the_nonlinear_film():
     assert orbit.min_film.min() > 0.15 * CLEARANCE
 
 
+@pytest.mark.slow
 def test_oil_whip_locks_to_the_flexible_rotors_natural_frequency():
     disk, natural = 40.0, 400.0
     rotor = Rotor.jeffcott(disk, disk * natural**2, 4.0, 0.04 * disk * natural, disk * 2e-6)
@@ -231,6 +236,7 @@ def test_oil_whip_locks_to_the_flexible_rotors_natural_frequency():
     assert np.ptp(last.displacements[:, 2]) > np.ptp(last.x)
 
 
+@pytest.mark.slow
 def test_a_thousand_revolutions_take_seconds():
     whirl(0.5, 1.05, 0.05, 5, MAPPED)
     start = time.process_time()
@@ -291,6 +297,7 @@ def test_map_of_a_finite_film_against_direct_solutions(finite_map):
             assert error < 5e-3 * min(load, np.linalg.norm(exact))
 
 
+@pytest.mark.slow
 def test_orbit_on_the_map_of_a_finite_film_against_solving_it_at_each_step(finite_map):
     mapped = FilmMapForce(finite_map, 0.0277, 0.05, 0.05, CLEARANCE)
     scale = mapped.compiled().numbers[1]

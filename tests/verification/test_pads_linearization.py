@@ -169,6 +169,7 @@ def test_slow_whirl_gives_the_derivative_of_the_static_force():
     np.testing.assert_allclose(np.linalg.solve(stiffness, [1.0, 0.0]), moved, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_condensed_coefficients_match_pads_driven_in_time():
     """The journal moves on a small ellipse; film and pads follow by their own equations."""
     inertia = 2e-4

@@ -74,6 +74,7 @@ def test_controlled_rotor_settles_past_its_passive_threshold(design, displacemen
     assert np.array_equal(orbit.actuator_force, actuator)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", [pd, lqr])
 def test_saturation_loses_the_rotor_after_a_large_disturbance(design):
     held = run(ActuatedForce(FILM, design(WEAK), REST), SMALL)
@@ -85,6 +86,7 @@ def test_saturation_loses_the_rotor_after_a_large_disturbance(design):
     assert unlimited.status is OrbitStatus.SETTLED
 
 
+@pytest.mark.slow
 def test_controlled_poles_are_the_simulated_decay_on_the_nonlinear_film():
     feedback = pd()
     poles = feedback.closed_loop(state_space(LINEAR, MASS)).poles()
@@ -94,6 +96,7 @@ def test_controlled_poles_are_the_simulated_decay_on_the_nonlinear_film():
     assert growth_rate(late).rate == pytest.approx(-30.0, rel=0.01)
 
 
+@pytest.mark.slow
 def test_the_least_derivative_gain_separates_holding_from_losing_the_rotor():
     feedback = pd()
     system = state_space(LINEAR, MASS)
