@@ -19,7 +19,7 @@ from rotorsim.machine.thresholds import threshold_speeds
 from rotorsim.model import LoadTarget, MeshSize
 from rotorsim.model.tolerances import ToleranceSettings, parse_spread
 from rotorsim.rotor import Rotor
-from rotorsim.show.stability_figures import tolerance_figure
+from rotorsim.show.figures import tolerance_histograms
 from rotorsim.status import SolveStatus
 from rotorsim.study.axes import changed, tabulate_over
 from rotorsim.study.tolerances import FilmThreshold, study_tolerances, tolerances_of
@@ -86,6 +86,7 @@ def test_viscosity_of_a_grade_is_scaled_at_every_temperature():
         assert ratio == pytest.approx(0.8, rel=1e-12)
 
 
+@pytest.mark.slow
 def test_table_over_load_and_temperature_holds_the_films_solved_one_by_one():
     scenario = Scenario.from_text(PLAIN)
     loads, temperatures = [6e3, 12e3], [308.15, 318.15]
@@ -134,6 +135,7 @@ def test_bad_axes(scenario, axes):
         tabulate_over(scenario, axes)
 
 
+@pytest.mark.slow
 def test_tolerances_become_a_distribution():
     scenario = Scenario.from_text(PLAIN + TOLERANCES)
     found = study_tolerances(scenario, operating_speed=1385.0, workers=1)
@@ -159,6 +161,7 @@ def test_tolerances_become_a_distribution():
     assert found.importance["radial_clearance"] > 0.5  # wider is worse
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", [1.02e-4, 0.5e-4])
 def test_films_that_do_not_converge_are_told_apart(monkeypatch, limit):
     def sometimes(case, speed, **options):
@@ -179,7 +182,7 @@ def test_films_that_do_not_converge_are_told_apart(monkeypatch, limit):
     assert failed == list(np.flatnonzero(study.samples.inputs["radial_clearance"] >= limit))
     assert 0 < len(failed) < 32
     assert study.samples.failures[0][1] == f"the {words}"
-    figure = tolerance_figure(study, "pump")
+    figure = tolerance_histograms(study, "pump")
     said = f"{32 - len(failed)} samples; {len(failed)} more did not converge"
     assert figure.get_suptitle() == f"pump\n{said}"
     # The histogram counts what was solved.
