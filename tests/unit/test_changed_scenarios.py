@@ -59,7 +59,7 @@ def test_written_text_holds_the_entries_of_the_file(path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "said"),
     [
-        ({"load": -1.0}, r"operating\.load: must be above 0"),
+        ({"load": -1.0}, r"operating\.load: must be 0 or more"),
         ({"load": 1e300}, r"operating\.load: is beyond every sensible force"),
         ({"load": "12 kg"}, "kgf"),
         ({"load": float("nan")}, "load: must be a finite number"),

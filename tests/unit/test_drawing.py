@@ -140,6 +140,6 @@ def test_the_estimate_is_near_the_solved_film() -> None:
 def test_shipped_drawings_are_ordinary() -> None:
     for path in shipped_scenarios().values():
         scenario = load_scenario(path)
-        mass = None if scenario.rotor is None else scenario.rotor.mass
+        mass = None if scenario.rotor is None else scenario.rotor.total_mass
         for case in scenario.cases():
             assert drawing_warnings(case, mass) == (), path

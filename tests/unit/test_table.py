@@ -133,12 +133,17 @@ def test_look_up_between_speeds_is_monotone_and_close(table):
     assert np.allclose(single.stiffness, curve(333.3)[0], rtol=1e-15)
 
 
-@pytest.mark.parametrize("speed", [99.9, 1000.1, 0.0, -200.0, np.nan])
+@pytest.mark.parametrize("speed", [99.9, 1000.1, 0.0, -200.0])
 def test_outside_the_table_raises_with_the_bounds(table, speed):
     with pytest.raises(OutOfRangeError, match=r"from 100 to 1000 rad/s"):
         table.at(speed, thermal_model="thd", radial_clearance=1e-4)
     with pytest.raises(OutOfRangeError, match="from 100 to 1000"):
         table.interpolator(thermal_model="thd", radial_clearance=1e-4)([200.0, speed])
+
+
+def test_a_speed_that_is_no_number_is_refused(table):
+    with pytest.raises(InputError, match="must be a finite number"):
+        table.at(np.nan, thermal_model="thd", radial_clearance=1e-4)
 
 
 def test_selection_names_what_exists(table):
