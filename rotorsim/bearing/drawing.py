@@ -17,17 +17,17 @@ from .checks import CRITICAL_TAYLOR, TURBULENT_REYNOLDS, DerivedNumbers, derived
 
 STANDARD_GRAVITY = 9.80665
 """[m/s2]"""
-CLEARANCE_RATIO = (0.3e-3, 5e-3)
+_CLEARANCE_RATIO = (0.3e-3, 5e-3)
 """c/R of bearings that run; DIN 31652-3 recommends 0.56 to 3.15 per mille."""
-UNIT_LOAD = (0.02e6, 5e6)
+_UNIT_LOAD = (0.02e6, 5e6)
 """W/(L D) [Pa]: above, white metal creeps (DIN 31652-3); below, bearings whirl early."""
-WEIGHT_TO_LOAD = (0.2, 5.0)
+_WEIGHT_TO_LOAD = (0.2, 5.0)
 """M g/W: far from 1 the load is not the rotor's weight, which may be meant (a gearbox)."""
-LOADED_ZONE = math.radians(20.0)
+_LOADED_ZONE = math.radians(20.0)
 """A groove nearer to the load line than this lies where the film carries [rad]."""
-HOT = 150.0 + ZERO_CELSIUS
+_HOT = 150.0 + ZERO_CELSIUS
 """[K]: mineral oils and white metal do not last there."""
-GREAT_HEATING = 100.0
+_GREAT_HEATING = 100.0
 """Adiabatic temperature rise in one turn [K] from which the film is not that of the drawing."""
 
 
@@ -122,9 +122,9 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
         return ()
     numbers, found = derived_numbers(case, speed), []
     rise = numbers.adiabatic_temperature_rise
-    if rise > GREAT_HEATING:
+    if rise > _GREAT_HEATING:
         found.append(
-            f"adiabatic temperature rise {rise:.0f} K is above {GREAT_HEATING:.0f} K: this oil "
+            f"adiabatic temperature rise {rise:.0f} K is above {_GREAT_HEATING:.0f} K: this oil "
             "heats itself thin at once; check viscosity, clearance and speed"
         )
     return (*found, *_warm_flow(numbers))
@@ -151,7 +151,7 @@ def _warm_flow(numbers: DerivedNumbers) -> list[str]:
 
 def _size_warnings(numbers: DrawingNumbers) -> list[str]:
     found = []
-    low, high = CLEARANCE_RATIO
+    low, high = _CLEARANCE_RATIO
     if not low <= numbers.clearance_ratio <= high:
         found.append(
             f"c/R {numbers.clearance_ratio * 1e3:.3g} per mille is outside {low * 1e3:g} to "
@@ -159,15 +159,15 @@ def _size_warnings(numbers: DrawingNumbers) -> list[str]:
             "diametral clearance, and their units"
         )
     unit = numbers.unit_load
-    if unit is not None and not UNIT_LOAD[0] <= unit <= UNIT_LOAD[1]:
-        word = "above" if unit > UNIT_LOAD[1] else "below"
-        limit = UNIT_LOAD[1] if unit > UNIT_LOAD[1] else UNIT_LOAD[0]
+    if unit is not None and not _UNIT_LOAD[0] <= unit <= _UNIT_LOAD[1]:
+        word = "above" if unit > _UNIT_LOAD[1] else "below"
+        limit = _UNIT_LOAD[1] if unit > _UNIT_LOAD[1] else _UNIT_LOAD[0]
         found.append(
             f"specific load W/(L D) {unit / 1e6:.3g} MPa is {word} {limit / 1e6:g} MPa: check the "
             "load per bearing and the dimensions"
         )
     ratio = numbers.weight_to_load
-    if ratio is not None and not WEIGHT_TO_LOAD[0] <= ratio <= WEIGHT_TO_LOAD[1]:
+    if ratio is not None and not _WEIGHT_TO_LOAD[0] <= ratio <= _WEIGHT_TO_LOAD[1]:
         found.append(
             f"the rotor's weight is {ratio:.3g} times the load: check that both are per bearing, "
             "unless the load is not the weight"
@@ -195,7 +195,7 @@ def _groove_warnings(bearing: Bearing) -> list[str]:
 
 
 def _in_loaded_zone(groove: Groove) -> bool:
-    return abs(float(angle_between(groove.center, 0.0))) < 0.5 * groove.extent + LOADED_ZONE
+    return abs(float(angle_between(groove.center, 0.0))) < 0.5 * groove.extent + _LOADED_ZONE
 
 
 def _hot_surroundings(case: Case) -> list[str]:
@@ -205,7 +205,8 @@ def _hot_surroundings(case: Case) -> list[str]:
         if groove.supply_temperature is not None:
             temperatures[f"supply temperature of groove {place}"] = groove.supply_temperature
     return [
-        f"{name} {value - ZERO_CELSIUS:.0f} °C is above {HOT - ZERO_CELSIUS:.0f} °C: check its unit"
+        f"{name} {value - ZERO_CELSIUS:.0f} °C is above {_HOT - ZERO_CELSIUS:.0f} °C: "
+        "check its unit"
         for name, value in temperatures.items()
-        if value > HOT
+        if value > _HOT
     ]

@@ -27,12 +27,12 @@ COEFFICIENTS = ("kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")
 
 DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
 
-FREQUENCY = "frequency_ratio"
+_FREQUENCY = "frequency_ratio"
 """Dimension of the variables ``kxx_of_frequency`` ... ``cyy_of_frequency``, where given."""
 
 LARGEST = 1e20
 """Of stiffness [N/m] and damping [N s/m]; beyond, their products would overflow."""
-SLOWEST, FASTEST = 1e-6, 1e6
+_SLOWEST, FASTEST = 1e-6, 1e6
 """Shaft speeds [rad/s]."""
 
 CONSTANT = "constant"
@@ -78,7 +78,7 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
         for i in "xy"
         for j in "xy"
     },
-    FREQUENCY: ("1", "whirl frequency over shaft frequency"),
+    _FREQUENCY: ("1", "whirl frequency over shaft frequency"),
     **{
         f"k{i}{j}_of_frequency": ("N m-1", f"stiffness -dF{i}/d{j} over the whirl frequency")
         for i in "xy"
@@ -157,9 +157,9 @@ SCALARS = (
 FULL_COEFFICIENTS = tuple(f"{kind}_{i}_{j}" for kind in "kc" for i in _NAMES for j in _NAMES)
 """K and C over displacements and rotations, row by row: ``k_x_x`` ... ``c_theta_y_theta_y``."""
 
-TEXTS = ("status", "stability", "cavitation")
+_TEXTS = ("status", "stability", "cavitation")
 
-UNKNOWNS = ("unknown", "other_unknown")
+_UNKNOWNS = ("unknown", "other_unknown")
 """Dimensions of the matrices over journal and pads: force of the first, motion of the second."""
 PAD_MATRICES = ("full_stiffness", "full_damping", "full_mass")
 
@@ -225,7 +225,7 @@ def _with_pads(
         at = np.array([names.index(name) for name in full.names])
         for kind, matrix in enumerate((full.stiffness, full.damping, full.mass)):
             values[kind, number, at[:, None], at] = matrix
-    dimensions = (*DIMENSIONS, *UNKNOWNS)
+    dimensions = (*DIMENSIONS, *_UNKNOWNS)
     size = len(names)
     variables: dict[str, Any] = {
         name: (dimensions, values[kind].reshape(*shape, size, size), cf_attributes(name))
@@ -237,7 +237,7 @@ def _with_pads(
     variables[name] = (DIMENSIONS, column.reshape(shape), cf_attributes(name))
     text = _text(names)
     return dataset.assign(variables).assign_coords(
-        {name: (name, text, cf_attributes(name)) for name in UNKNOWNS}
+        {name: (name, text, cf_attributes(name)) for name in _UNKNOWNS}
     )
 
 
@@ -265,13 +265,13 @@ def _with_frequency(
         ]
     )
     values = np.moveaxis(values.reshape(*shape, ratios.size, 8), -2, -3)
-    dimensions = (*DIMENSIONS[:-1], FREQUENCY, DIMENSIONS[-1])
+    dimensions = (*DIMENSIONS[:-1], _FREQUENCY, DIMENSIONS[-1])
     names = [f"{name}_of_frequency" for name in COEFFICIENTS]
     variables = {
         name: (dimensions, values[..., i], cf_attributes(name)) for i, name in enumerate(names)
     }
     return dataset.assign(variables).assign_coords(
-        {FREQUENCY: (FREQUENCY, ratios, cf_attributes(FREQUENCY))}
+        {_FREQUENCY: (_FREQUENCY, ratios, cf_attributes(_FREQUENCY))}
     )
 
 
@@ -329,7 +329,7 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
         column = [getattr(p, name) for p in points]
         columns[name] = np.array([np.nan if v is None else float(v) for v in column])
     columns["iterations"] = np.array([int(p.iterations) for p in points])
-    for name in TEXTS:
+    for name in _TEXTS:
         column = [getattr(p, name) for p in points]
         columns[name] = _text(["" if v is None else v for v in column])
     return columns
@@ -454,10 +454,10 @@ def _check_numbers(dataset: xr.Dataset, source: str | Path | None) -> None:
     speed = np.asarray(dataset["speed"].values, dtype=float)
     if not speed.size or not np.all(np.isfinite(speed)) or np.any(np.diff(speed) <= 0.0):
         raise TableError("speeds must be finite and ascend", source=source, key="speed")
-    if speed[0] < SLOWEST or speed[-1] > FASTEST:
+    if speed[0] < _SLOWEST or speed[-1] > FASTEST:
         raise TableError(
-            f"speeds must be {SLOWEST:g} to {FASTEST:g} rad/s", source=source, key="speed",
-            value=float(speed[0] if speed[0] < SLOWEST else speed[-1]),
+            f"speeds must be {_SLOWEST:g} to {FASTEST:g} rad/s", source=source, key="speed",
+            value=float(speed[0] if speed[0] < _SLOWEST else speed[-1]),
         )  # fmt: skip
     clearance = np.asarray(dataset["radial_clearance"].values, dtype=float)
     unknown = clearance.size == 1 and np.isnan(clearance[0])

@@ -21,15 +21,15 @@ from .thd import ThermalFilm, solve_thermal_film, uniform_heat
 
 Array = NDArray[np.float64]
 
-FORCE_TOLERANCE = 1e-10
+_FORCE_TOLERANCE = 1e-10
 """Of isothermal films: cross terms that vanish by symmetry are to vanish."""
-THERMAL_FORCE_TOLERANCE = 1e-7
-MAX_STEPS = 80
-MAX_REVISIONS = 6
+_THERMAL_FORCE_TOLERANCE = 1e-7
+_MAX_STEPS = 80
+_MAX_REVISIONS = 6
 """Times that the set of unloaded pads may be revised."""
-ATTITUDES = 24
+_ATTITUDES = 24
 """Directions in which the journal is tried where Newton's method finds no attitude."""
-MAX_RETRIES = 2
+_MAX_RETRIES = 2
 """Times that a thermal film is solved which does not converge."""
 
 
@@ -44,7 +44,7 @@ class _Cold:
 
     @property
     def converged(self) -> bool:
-        return self.off < FORCE_TOLERANCE and self.state.solution.converged
+        return self.off < _FORCE_TOLERANCE and self.state.solution.converged
 
 
 def solve_pads(case: Case, speed: float, *, initial: WarmStart | None = None) -> FilmSolution:
@@ -99,16 +99,16 @@ def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
         following, off = search(state)
         if len(search.unloaded) == len(search.frames):
             return _Cold(state, 1.0, step, True)
-        if search.changed(q) and revisions < MAX_REVISIONS:
+        if search.changed(q) and revisions < _MAX_REVISIONS:
             revisions += 1
             q, full, best = search.settle(q, layers), None, np.inf
             continue
-        if off < FORCE_TOLERANCE:
+        if off < _FORCE_TOLERANCE:
             settled = search.revived(q, layers)
             if settled is not None:
                 q, full, best = settled, None, np.inf
                 continue
-        if off < FORCE_TOLERANCE or search.unreachable or step >= MAX_STEPS:
+        if off < _FORCE_TOLERANCE or search.unreachable or step >= _MAX_STEPS:
             return _Cold(state, off, step, search.unreachable)
         stalled = 0 if off < 0.8 * best else stalled + 1
         best = min(best, off)
@@ -131,9 +131,9 @@ def _by_attitude(search: PadSearch, layers: LayerIntegrals) -> _Cold | None:
             return math.nan
         return math.atan2(-force[1], -force[0])
 
-    angles = np.linspace(-math.pi, math.pi, ATTITUDES + 1)
+    angles = np.linspace(-math.pi, math.pi, _ATTITUDES + 1)
     values = [misfit(float(angle)) for angle in angles]
-    for k in sorted(range(ATTITUDES), key=lambda k: abs(angles[k])):
+    for k in sorted(range(_ATTITUDES), key=lambda k: abs(angles[k])):
         low, high = values[k], values[k + 1]
         if not (low * high <= 0.0 and abs(low - high) < math.pi):
             continue
@@ -157,7 +157,7 @@ def _thermal(search: PadSearch, q: Array, heat: Heat) -> ThermalFilm:
     iterations, revisions = 0, 0
     while True:
         film = solve_thermal_film(
-            search.problem, q, initial=heat, move=search, force_tolerance=THERMAL_FORCE_TOLERANCE
+            search.problem, q, initial=heat, move=search, force_tolerance=_THERMAL_FORCE_TOLERANCE
         )
         iterations, revisions = iterations + film.iterations, revisions + 1
         film = replace(film, iterations=iterations)
@@ -166,7 +166,7 @@ def _thermal(search: PadSearch, q: Array, heat: Heat) -> ThermalFilm:
         settled = search.revived(q, layers) if film.converged else None
         if settled is None and film.converged and not search.changed(q):
             return film
-        tired = revisions == (MAX_REVISIONS if film.converged else MAX_RETRIES)
+        tired = revisions == (_MAX_REVISIONS if film.converged else _MAX_RETRIES)
         if tired or film.out_of_range:
             return film
         q = search.settle(q, layers) if settled is None else settled

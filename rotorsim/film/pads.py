@@ -39,27 +39,27 @@ from .problem import FilmProblem, FilmState, film_state
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-RETURNS = 3
+_RETURNS = 3
 """Times that a pad may become unloaded and loaded again before its E_n may no longer cross zero."""
-FILM_KEPT = 0.35
+_FILM_KEPT = 0.35
 """Part of each pad's thinnest film that a step must leave."""
-LARGEST_STEP = 0.3
+_LARGEST_STEP = 0.3
 """Of E_n and E_t, relative to the clearance."""
-THINNEST = 1e-4
+_THINNEST = 1e-4
 """Film thickness relative to the clearance at which the search gives up."""
-LEAST_ECCENTRICITY = 1e-8
+_LEAST_ECCENTRICITY = 1e-8
 """E_n relative to the clearance above which a pad carries load wherever its pivot stands."""
-SLACK = 0.05
+_SLACK = 0.05
 """Stiffness of the journal over load per clearance, added while the forces are far off."""
-SETTLED = 0.005
+_SETTLED = 0.005
 """Distance of the centre of pressure from the pivot, in pad angles, at which a tilt is known
 roughly."""
-SAMPLES = 16
+_SAMPLES = 16
 """Tilts at which the root of a pad with E_n <= 0 is looked for."""
 
 
 @dataclass(frozen=True)
-class PadFrame:
+class _PadFrame:
     """One pad of a film: its cells, its unknowns, and how far it may tilt.
 
     Attributes
@@ -122,7 +122,7 @@ class PadFrame:
         return min(angle, 0.45 * math.pi)
 
 
-def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
+def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[_PadFrame, ...]:
     """Frames of all pads of a film."""
     _, places = pad_unknowns(bearing)
     angles = np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])[[0, 1, 2, 0, 0]]
@@ -132,7 +132,7 @@ def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
         sine = np.sin(angles[:, columns] - pad.pivot_angle)[:, :, None]
         arm = bearing.journal_radius + pad.thickness
         frames.append(
-            PadFrame(
+            _PadFrame(
                 pad,
                 bearing.clearance_of(pad),
                 bearing.preload_of(pad),
@@ -171,7 +171,7 @@ class PadSearch:
         self._revived: frozenset[int] = frozenset()
 
     @cached_property
-    def frames(self) -> tuple[PadFrame, ...]:
+    def frames(self) -> tuple[_PadFrame, ...]:
         """Frames of the pads."""
         return pad_frames(self.whole.bearing, self.whole.mesh)
 
@@ -254,7 +254,7 @@ class PadSearch:
                 missing[place] = stiffness * (wanted - float(state.displacement[place]))
         return missing
 
-    def _pivot_under(self, state: FilmState, frame: PadFrame) -> tuple[float, float]:
+    def _pivot_under(self, state: FilmState, frame: _PadFrame) -> tuple[float, float]:
         """Deflection of a pad's pivot under the film's force, and the pivot's stiffness there.
 
         Newton's method takes the pivot's law at the film's force rather than at the deflection:
@@ -297,12 +297,12 @@ class PadSearch:
         elif isinstance(self.target, EccentricityTarget):
             off = float(np.linalg.norm(missing[1:])) / max(carried, 1e-300)
             off = max(off, 1.0) if missing[0] >= 0.0 else off
-            step = self._turn(q, missing, stiffness, SLACK * min(off, 1.0) * carried)
+            step = self._turn(q, missing, stiffness, _SLACK * min(off, 1.0) * carried)
         else:
             load = self.target.load or pressure_force(state)
             off = float(np.linalg.norm(missing)) / load
             # A journal on one pad alone has no stiffness across: let it slide, not leap.
-            slack = SLACK * min(off, 1.0) * load / self.whole.bearing.radial_clearance
+            slack = _SLACK * min(off, 1.0) * load / self.whole.bearing.radial_clearance
             stiffness[[0, 1], [0, 1]] += slack
             step = _solve(stiffness, missing)
         following = self.allowed(q, q + weights * step)
@@ -310,7 +310,7 @@ class PadSearch:
             self.problem.geometry.thickness(q)[:, frame.columns].min() / frame.clearance
             for frame in self.frames
         )
-        self.unreachable = bool(thin < 2.0 * THINNEST and off > 1e-3)
+        self.unreachable = bool(thin < 2.0 * _THINNEST and off > 1e-3)
         return following, off
 
     def _pressed(self, state: FilmState) -> float:
@@ -335,7 +335,7 @@ class PadSearch:
         """Numbers of the pads without pressure."""
         return frozenset(k for k, f in enumerate(self.frames) if not self._carries(state, f))
 
-    def _carries(self, state: FilmState, frame: PadFrame) -> bool:
+    def _carries(self, state: FilmState, frame: _PadFrame) -> bool:
         return bool(state.solution.pressure[frame.columns].max() > 0.0)
 
     def allowed(self, old: Array, new: Array, /) -> Array:
@@ -346,16 +346,16 @@ class PadSearch:
         scale = 1.0
         for number, frame in enumerate(self.frames):
             before, after = frame.eccentricity(old)[0], frame.eccentricity(new)[0]
-            room = LARGEST_STEP * frame.clearance
+            room = _LARGEST_STEP * frame.clearance
             if number in self.unloaded:
                 room = 0.5 * (frame.clearance - before)
                 after = max(after, before)
-            elif self._returns[number] >= RETURNS and before > 0.0 and after < before:
+            elif self._returns[number] >= _RETURNS and before > 0.0 and after < before:
                 room = min(room, 0.75 * before)
             scale = min(scale, max(room, 0.0) / max(abs(after - before), 1e-300))
         film = geometry.thickness(old)
         floors = [
-            max(FILM_KEPT * float(film[:, frame.columns].min()), THINNEST * frame.clearance)
+            max(_FILM_KEPT * float(film[:, frame.columns].min()), _THINNEST * frame.clearance)
             for frame in loaded
         ]
         result = old
@@ -375,14 +375,14 @@ class PadSearch:
             result[:2] *= size / float(np.hypot(result[0], result[1]))
         return result
 
-    def _above_trivial(self, old: Array, new: Array, loaded: list[PadFrame]) -> Array:
+    def _above_trivial(self, old: Array, new: Array, loaded: list[_PadFrame]) -> Array:
         """Keep E_t near, and of every pad with E_n > 0 above zero, where its film carries."""
         new = new.copy()
         for frame in loaded:
             along, across = frame.eccentricity(new)
             turned = across - frame.eccentricity(old)[1]
-            if abs(turned) > LARGEST_STEP * frame.clearance:
-                excess = turned - math.copysign(LARGEST_STEP * frame.clearance, turned)
+            if abs(turned) > _LARGEST_STEP * frame.clearance:
+                excess = turned - math.copysign(_LARGEST_STEP * frame.clearance, turned)
                 new[frame.unknowns.tilt] -= excess / frame.arm
                 across -= excess
             if along > 0.0 and across <= 0.0 and not self._skewed:
@@ -460,7 +460,7 @@ class PadSearch:
     ) -> tuple[dict[int, tuple[float, float]], Flags | None]:
         """Bracket the uppermost root of each pad `asked` for, where its moment falls."""
         limits = {n: self.frames[n].tilt_limits(self.whole.geometry, q) for n in asked}
-        shares = (np.arange(SAMPLES) + 0.5) / SAMPLES
+        shares = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
         levers, full = [], None
         for share in shares:
             for number in asked:
@@ -474,7 +474,7 @@ class PadSearch:
             frame, (low, high) = self.frames[number], limits[number]
             values = np.array([row[number] for row in levers])
             rising = np.flatnonzero(values > 0.0)
-            if rising.size and rising[-1] + 1 < SAMPLES:
+            if rising.size and rising[-1] + 1 < _SAMPLES:
                 at = low + shares[[rising[-1], rising[-1] + 1]] * (high - low)
                 found[number] = (float(at[0]), float(at[1]))
             elif rising.size:
@@ -498,7 +498,7 @@ class PadSearch:
             full = state.solution.full
             levers = self._levers(state)
             for number, root in roots.items():
-                root.record(float(levers[number]), SETTLED * self.frames[number].pad.arc)
+                root.record(float(levers[number]), _SETTLED * self.frames[number].pad.arc)
             if all(root.found for root in roots.values()):
                 break
         return q
@@ -533,10 +533,10 @@ class PadSearch:
         self._keep_out(self.unloaded - frozenset(found), q)
         return q
 
-    def _above(self, frame: PadFrame, q: Array) -> bool:
-        return frame.eccentricity(q)[0] > LEAST_ECCENTRICITY * frame.clearance
+    def _above(self, frame: _PadFrame, q: Array) -> bool:
+        return frame.eccentricity(q)[0] > _LEAST_ECCENTRICITY * frame.clearance
 
-    def _asks(self, frame: PadFrame, above: bool) -> bool:
+    def _asks(self, frame: _PadFrame, above: bool) -> bool:
         return self._skewed or (not above and frame.pad.offset > 0.5)
 
     @property
