@@ -202,6 +202,7 @@ def test_stability_and_check_know_a_machine_file(here: CommandLine, tmp_path):
     assert "--mass" in done.stderr
 
 
+@pytest.mark.slow
 def test_run_tells_supports_response_and_checks(here: CommandLine, tmp_path):
     path = tmp_path / "rotor.toml"
     probes = '[[probe]]\nname = "DE"\nat = "0.1 m"\nangle = "45 deg"\n'

@@ -203,6 +203,7 @@ def _as_csv(here, tmp_path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_table_of_another_bearing_is_noticed(call, here, tmp_path):
     (tmp_path / "linear.toml").write_text(LINEAR, encoding="utf-8")
     other = LINEAR.replace('length = "25 mm"', 'length = "30 mm"').replace("0.02 Pa*s", "0.03 Pa*s")

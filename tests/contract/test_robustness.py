@@ -200,6 +200,7 @@ def tampered(path: Path, how: str) -> str:
     return "does not match its SHA-256"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("how", ["truncated", "newer", "foreign", "scenario changed"])
 @pytest.mark.parametrize(
     "words",

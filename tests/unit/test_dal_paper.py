@@ -290,6 +290,7 @@ def test_every_claim_is_decided_on_a_very_coarse_mesh(coarse):
     assert judged["friction-34-liquid"].evidence.value == pytest.approx(100 / 3, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_page_of_a_very_coarse_mesh_has_every_claim_and_no_gap(coarse):
     rows = assess(coarse)
     text = markdown(coarse, rows, "images")
