@@ -188,7 +188,7 @@ def write_map(path: Path, force_map: ForceMap) -> None:
         )
 
 
-def _checksum(coefficients: Array, numbers: Array) -> Array:
+def _checksum(coefficients: Array, numbers: Array) -> NDArray[np.uint8]:
     """SHA-256 of a map's arrays, shapes included, as 32 bytes."""
     digest = hashlib.sha256(repr((coefficients.shape, numbers.shape)).encode())
     for values in (coefficients, numbers):
@@ -212,7 +212,8 @@ def read_map(path: Path) -> ForceMap | None:
         return None
     if not np.array_equal(checksum, _checksum(coefficients, numbers)):
         return None
-    return ForceMap(np.ascontiguousarray(coefficients), *map(float, numbers))
+    first, step, last, central = map(float, numbers)
+    return ForceMap(np.ascontiguousarray(coefficients), first, step, last, central)
 
 
 @dataclass

@@ -8,6 +8,7 @@ import warnings
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -161,6 +162,9 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
     failed = _Solution(np.zeros(0), np.zeros((state.size, 0)), -1)
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # SciPy says on stderr what the status says as well
+        implicit: dict[str, Any] = (
+            {} if problem.method is Method.DOP853 else {"jac": _jacobian(run)}
+        )
         try:
             found = solve_ivp(
                 run.rates,
@@ -171,7 +175,7 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
                 events=run.contact if problem.stop_at_contact else None,
                 rtol=problem.tolerance,
                 atol=run.tolerance,
-                **({} if problem.method is Method.DOP853 else {"jac": _jacobian(run)}),
+                **implicit,
             )
         except InputError:
             raise
