@@ -49,6 +49,7 @@ def call(here: CommandLine, tmp_path: Path) -> CommandLine:
     return partial(here, "orbit")
 
 
+@pytest.mark.slow
 def test_json_says_what_the_orbit_comes_to(call, tmp_path):
     done = call("small.toml", "--json")
     assert done.returncode == 0, done.stderr

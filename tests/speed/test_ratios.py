@@ -80,6 +80,7 @@ def least_ratio(action: Callable[[], object], rounds: int) -> float:
     return mine / unit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "speed", "limit"),
     [

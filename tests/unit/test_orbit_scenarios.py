@@ -90,6 +90,7 @@ def test_the_kind_of_a_ramp():
         )
 
 
+@pytest.mark.slow
 def test_unbalance_and_static_load_act_unless_switched_off():
     both = orbit_problem(constant(""))
     assert both.rotor.unbalance.tolist() == [5e-4]

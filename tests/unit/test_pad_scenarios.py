@@ -140,6 +140,7 @@ def table() -> CoefficientTable:
     return rs.tabulate(scenario(FIVE + 'preload = 0.3\nload = "on_pad"\n'))
 
 
+@pytest.mark.slow
 def test_a_table_keeps_the_full_matrices(table, tmp_path):
     again = CoefficientTable.load(table.save(tmp_path / "pads.nc"))
     for name in ("full_stiffness", "full_damping", "full_mass"):
@@ -191,6 +192,7 @@ def test_stability_uses_the_pads_and_tells_what_the_reduced_coefficients_give(ta
         assert np.abs(difference).max() < 1.0
 
 
+@pytest.mark.slow
 def test_tables_of_bores_have_no_pads():
     bore = HEAD.replace('kind = "tilting_pad"\n', "")
     table = rs.tabulate(Scenario.from_text(bore + REST))

@@ -56,6 +56,7 @@ def test_same_values_as_the_dense_solver(kind):
     assert (error / np.abs(reference).max(axis=1)).max() < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["film", "light", "nearly alike modes"])
 def test_relative_to_the_eigenvalue_itself_in_extended_precision(kind):
     k, c, mass = (v[:3000].astype(np.longdouble) for v in coefficients(kind))

@@ -60,6 +60,7 @@ def test_coefficients(row):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("eccentricity", "length_to_diameter"), [(0.372, 0.5), (0.655, 0.5), (0.25, 1.0), (0.6, 1.0)]
 )

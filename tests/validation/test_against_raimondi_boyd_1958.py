@@ -66,6 +66,7 @@ def test_table(row):
     assert found["phi_deg"] == pytest.approx(row["phi_deg"], abs=RAIMONDI_BOYD_ATTITUDE_DEG)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "row", [r for r in ROWS if (r["L_over_D"], r["eps"]) in COARSE_1958], ids=_name
 )

@@ -96,6 +96,7 @@ def test_dynamic_stiffness_equals_the_second_method_s(film, second):
         assert found == pytest.approx(expected, abs=0.01 * np.abs(expected).max())
 
 
+@pytest.mark.slow
 def test_critical_mass_with_stored_oil(film, second):
     """5840 kg and 0.517 by a third program, on a mesh of its own; 11 360 kg without the oil."""
     mass, nu = threshold(film_dynamics(film, NO_TURN))
@@ -112,6 +113,7 @@ def test_critical_mass_with_stored_oil(film, second):
     assert abs(misfit) < 0.01 * abs(np.linalg.det(law(1j * nu)))
 
 
+@pytest.mark.slow
 def test_a_point_states_the_coefficients_at_its_threshold(film):
     point, _ = solve_case(grooved(HELD, **SHORT, mesh=(240, 40)), SPEED)
     mass, nu = threshold(film_dynamics(film, NO_TURN))

@@ -127,6 +127,7 @@ def test_the_orbit_rests_where_the_solver_finds_the_equilibrium():
     assert math.atan2(rest[1], rest[0]) == pytest.approx(point.attitude_angle, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_a_stiff_run_close_to_the_bush_comes_to_rest():
     """The film's rates are 9e5 and 14 1/s: 40 s of motion take some hundred steps."""
     film = isothermal_case(
