@@ -85,7 +85,7 @@ def _in_degrees(load_direction: float) -> float:
 
     Examples
     --------
-    >>> in_degrees(1.5 * math.pi)
+    >>> _in_degrees(1.5 * math.pi)
     -90.0
     """
     if not math.isfinite(load_direction):
