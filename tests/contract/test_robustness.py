@@ -173,9 +173,8 @@ def test_shipped_names_are_completed():
     assert "dal" in shipped_names("")
 
 
-@pytest.mark.parametrize("command", ["solve", "control"])
-def test_a_clearance_is_answered_in_the_unit_of_drawings(command, nonsense):
-    done = nonsense(command, "good.toml", "--clearance", "0.18 mm")
+def test_a_clearance_is_answered_in_the_unit_of_drawings(nonsense):
+    done = nonsense("control", "good.toml", "--clearance", "0.18 mm")
     assert done.returncode == 2
     assert done.stderr.startswith("error: --clearance: must be one that the scenario lists in")
     assert "bearing.radial_clearance: 100 um;" in done.stderr
