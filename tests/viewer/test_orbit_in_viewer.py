@@ -61,7 +61,7 @@ def assert_dot(viewer, orbit, rows) -> None:
 
 def test_a_live_run_is_seen_in_the_open_viewer(open_viewer, scenario, monkeypatch, capsys):
     viewer = open_viewer()
-    monkeypatch.setattr(live, "PORT", viewer.port)
+    monkeypatch.setattr(live, "_PORT", viewer.port)
     done = called(capsys, "orbit", scenario, "--live", "--quiet")
     assert done.returncode == 0, done.stderr
     viewer.wait_until_loaded()
