@@ -301,6 +301,7 @@ def test_page_of_a_very_coarse_mesh_has_every_claim_and_no_gap(coarse):
     assert found == dict.fromkeys(WALLS, 36)
 
 
+@pytest.mark.slow
 def test_curves_hold_what_a_single_solution_gives(coarse):
     point = coarse.films[THD, "conduction", 150, 15000]
     stiffness = [

@@ -104,6 +104,7 @@ def test_unbalance_and_static_load_act_unless_switched_off():
     assert none.rotor.unbalance.tolist() == [0.0]
 
 
+@pytest.mark.slow
 def test_loads_reach_the_problem_in_si():
     lines = (
         'step = { force = ["1 kN", "-2 N"], start = "0.1 s", stop = "200 ms", on = "disc" }\n'

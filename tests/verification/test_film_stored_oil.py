@@ -30,6 +30,8 @@ from tests.verification.test_film_mass_conserving import (
     second_method,
 )
 
+pytestmark = pytest.mark.slow
+
 SPEED = 200.0 * math.pi
 FORCE = 6.0 * VISCOSITY * SPEED * RADIUS**4 / CLEARANCE**2
 SHORT = {"center": 150.0, "extent": 18.0, "share": 0.3}
@@ -85,7 +87,6 @@ def test_a_march_in_time_gives_the_second_method_s_dynamic_stiffness():
     assert limit == pytest.approx(expected, abs=0.01 * np.abs(expected).max())
 
 
-@pytest.mark.slow
 def test_dynamic_stiffness_equals_the_second_method_s(film, second):
     other, place = second
     assert np.array(film.state.displacement) / CLEARANCE == pytest.approx(place, abs=2e-4)
@@ -96,7 +97,6 @@ def test_dynamic_stiffness_equals_the_second_method_s(film, second):
         assert found == pytest.approx(expected, abs=0.01 * np.abs(expected).max())
 
 
-@pytest.mark.slow
 def test_critical_mass_with_stored_oil(film, second):
     """5840 kg and 0.517 by a third program, on a mesh of its own; 11 360 kg without the oil."""
     mass, nu = threshold(film_dynamics(film, NO_TURN))
@@ -113,7 +113,6 @@ def test_critical_mass_with_stored_oil(film, second):
     assert abs(misfit) < 0.01 * abs(np.linalg.det(law(1j * nu)))
 
 
-@pytest.mark.slow
 def test_a_point_states_the_coefficients_at_its_threshold(film):
     point, _ = solve_case(grooved(HELD, **SHORT, mesh=(240, 40)), SPEED)
     mass, nu = threshold(film_dynamics(film, NO_TURN))
