@@ -16,7 +16,7 @@ from ..model.lubricant import ZERO_CELSIUS
 from .checks import CRITICAL_TAYLOR, TURBULENT_REYNOLDS, DerivedNumbers, derived_numbers
 
 STANDARD_GRAVITY = 9.80665
-"""[m/s2]"""
+"""Standard acceleration of free fall [m/s2] (ISO 80000-3)."""
 _CLEARANCE_RATIO = (0.3e-3, 5e-3)
 """c/R of bearings that run; DIN 31652-3 recommends 0.56 to 3.15 per mille."""
 _UNIT_LOAD = (0.02e6, 5e6)

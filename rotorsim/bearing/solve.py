@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import FilmFlow, film_flow
+from ..film.geometry import rotation
 from ..film.heat import HeatBalance, with_groove_oil
 from ..film.linearization import following_stiffness
 from ..film.losses import friction_force, journal_moment, peak, side_flow, supply_flow
@@ -108,7 +109,7 @@ def operating_point(
         following, settled = following_stiffness(solution.thermal)
         if not settled and status is SolveStatus.CONVERGED:
             status, message = SolveStatus.NOT_CONVERGED, "a displaced film did not converge"
-    turn = _rotation(solution.frame)
+    turn = rotation(solution.frame)
     dynamics = film_dynamics(solution, turn, following=following)
     stiffness, damping, frequency_ratio = dynamics.stated_coefficients()
     center = turn @ state.displacement[:2]
@@ -220,11 +221,6 @@ def _min_film_thickness(solution: FilmSolution) -> float:
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance - math.hypot(*state.displacement)
     return state.min_thickness
-
-
-def _rotation(angle: float) -> Array:
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([[cos, -sin], [sin, cos]])
 
 
 def _ratio(above: float, below: float) -> float:

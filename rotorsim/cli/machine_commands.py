@@ -28,8 +28,8 @@ _SHOWN_SPEEDS = 12
 
 def check_machine(output: Output, path: Path) -> int:
     """Validate a machine file and say what would run."""
+    from ..bearing.drawing import STANDARD_GRAVITY
     from ..files.machine import load_machine
-    from ..machine.statics import GRAVITY
 
     loaded = load_machine(path)
     rotor, beam = loaded.rotor_with_unbalance(), loaded.rotor.beam
@@ -52,7 +52,7 @@ def check_machine(output: Output, path: Path) -> int:
     if not (output.json or output.quiet):
         table = grid(loaded.title, "", "")
         table.add_row("shaft", f"{number(beam.length * 1e3)} mm, {len(rotor.nodes)} nodes")
-        weight = rotor.total_mass * GRAVITY / 1e3
+        weight = rotor.total_mass * STANDARD_GRAVITY / 1e3
         table.add_row("mass of the rotor", f"{number(rotor.total_mass)} kg ({number(weight)} kN)")
         table.add_row("discs and added masses", str(len(beam.discs)))
         table.add_row(

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from ..model import Case, EccentricityTarget, LoadTarget
 from .banded import NoFilmError, SingularFilmError
 from .equilibrium import CLEARANCE_KEPT
-from .geometry import bore_offset
+from .geometry import bore_offset, rotation
 from .layers import isoviscous_layers
 from .mesh import groove_edges, in_full_groove
 from .problem import film_problem, film_state
@@ -93,8 +93,7 @@ class ForceField:
         """Return the force at `position`; None where it cannot be solved for."""
         bearing = self.case.bearing
         frame = math.atan2(position[1], position[0]) if bearing.is_plain else 0.0
-        cos, sin = math.cos(frame), math.sin(frame)
-        turn = np.array([[cos, -sin], [sin, cos]])
+        turn = rotation(frame)
         x, y = turn.T @ position
         viscosity = float(self.case.lubricant.viscosity(self.case.thermal.supply_temperature))
         problem = film_problem(self.case, self.speed, bearing.turned(-frame), (float(x), float(y)))

@@ -249,3 +249,9 @@ def rotations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
 def _angles(mesh: FilmMesh) -> Array:
     """Angles [rad] of centres, west faces and east faces, (3, n)."""
     return np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])
+
+
+def rotation(angle: float) -> Array:
+    """Return the matrix (2, 2) from a frame turned by `angle` [rad] to the one it is turned in."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([[cos, -sin], [sin, cos]])

@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bearing.drawing import STANDARD_GRAVITY
 from ..rotor import Rotor, with_unbalance
 from ..rows import RPM
 from .branches import Modes
 from .machine import Machine
-from .statics import GRAVITY
 from .thresholds import critical_speeds
 
 Array = NDArray[np.float64]
@@ -156,7 +156,7 @@ def _planes(
     for node, load in loads.items():
         if inboard:
             nearest = min(inboard, key=lambda i: abs(at[i] - at[node]))
-            mass[nearest] += abs(load) / GRAVITY
+            mass[nearest] += abs(load) / STANDARD_GRAVITY
     sign = np.sign(line[max(found, key=lambda i: abs(line[i]))])
     return tuple(
         UnbalancePlane(

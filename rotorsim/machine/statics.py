@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError
 from ..rotor import Rotor
 
@@ -20,8 +21,6 @@ Law = Callable[[Array], tuple[Array, Array]]
 """Load (2,) [N] on a support to the journal's displacement (2,) [m] and its derivative
 (2, 2) [m/N]."""
 
-GRAVITY = 9.80665
-"""Standard acceleration of free fall [m/s^2] (ISO 80000-3)."""
 _MAX_STEPS = 60
 _TOLERANCE = 1e-6
 """Of the reactions, relative to the load of the whole rotor; a heated film's force is known to some
@@ -57,7 +56,7 @@ class StaticEquilibrium:
 
 def weight(rotor: Rotor) -> Array:
     """Forces (size,) [N] of gravity along x."""
-    return np.asarray(rotor.mass @ rotor.translation((GRAVITY, 0.0)), dtype=float)
+    return np.asarray(rotor.mass @ rotor.translation((STANDARD_GRAVITY, 0.0)), dtype=float)
 
 
 def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Array:

@@ -16,9 +16,11 @@ from ..bearing.operating_point import OperatingPoint
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..files.scenario import Scenario
+from ..film.geometry import rotation
 from ..machine.branches import Modes, Verdict
 from ..machine.machine import Machine, Mount
 from ..machine.modes import known_speeds, machine_spectrum, modes
+from ..machine.peaks import node_at
 from ..machine.response import UnbalanceResponse, unbalance_response
 from ..machine.statics import Law, StaticEquilibrium, static_equilibrium, weight
 from ..machine.support import (
@@ -39,7 +41,6 @@ from ..machine.thresholds import (
 from ..model import Case, LoadTarget, ThermalModel
 from ..model.machine import Matrix, SealEntry, SupportEntry
 from ..rotor import Rotor
-from ..rotor.beam import nearest_node
 from .sweep import Progress, sweep_points
 
 Array = NDArray[np.float64]
@@ -237,10 +238,8 @@ class _Analysis:
         self.description, self.rotor, self.model = description, rotor, model
         self.workers, self.progress = workers, progress
         self.speeds = np.array(description.operating.speeds)
-        positions = np.array([node.position for node in rotor.nodes])
-        self.nodes = [nearest_node(positions, entry.at) for entry in description.support]
-        self.seal_nodes = [nearest_node(positions, entry.at) for entry in description.seal]
-        self.positions = positions
+        self.nodes = [node_at(rotor, entry.at) for entry in description.support]
+        self.seal_nodes = [node_at(rotor, entry.at) for entry in description.seal]
 
     def result(self) -> MachineResult:
         """Statics, films, supports."""
@@ -273,7 +272,7 @@ class _Analysis:
             force += weight(self.rotor)
         for entry in self.description.load:
             rows = np.array(entry.force)
-            node = nearest_node(self.positions, entry.at)
+            node = node_at(self.rotor, entry.at)
             for axis in (0, 1):
                 force[self.rotor.planes[node][axis]] += np.interp(
                     speed, rows[:, 0], rows[:, axis + 1]
@@ -400,7 +399,7 @@ class _Analysis:
         else:
             table = self.description.tables[self.description.support_names[i]]
             own = table.interpolator()(speed, gaps="nan")[0]
-        turn = _rotation(entry.angle)
+        turn = rotation(entry.angle)
         matrix = turn @ own @ turn.T
         if not np.all(np.isfinite(matrix)) or np.linalg.cond(matrix) > 1e12:
             raise InputError(
@@ -453,7 +452,7 @@ class _Film:
             point = self.point(load, speed)
             if not point.converged:
                 return np.full(2, np.nan), np.full((2, 2), np.nan)
-            turn = _rotation(math.atan2(load[1], load[0]))
+            turn = rotation(math.atan2(load[1], load[0]))
             return _journal_of(point, load), turn @ np.linalg.inv(point.stiffness) @ turn.T
 
         return displacement
@@ -463,7 +462,7 @@ def _journal_of(point: OperatingPoint, load: Array) -> Array:
     """Displacement of the journal under a load [N] in the machine's frame [m]."""
     angle, size = point.attitude_angle, point.eccentricity_ratio * point.radial_clearance
     place = size * np.array([math.cos(angle), math.sin(angle)])
-    return np.asarray(_rotation(math.atan2(load[1], load[0])) @ place, dtype=float)
+    return np.asarray(rotation(math.atan2(load[1], load[0])) @ place, dtype=float)
 
 
 def _displaced(journal: Array) -> Law:
@@ -479,7 +478,7 @@ def _film_support(speeds: Array, state: SupportState) -> Support:
     columns = np.full((speeds.size, 9), np.nan)
     for k, (point, angle) in enumerate(zip(state.points, state.direction, strict=True)):
         if point.converged:
-            turn = _rotation(float(angle))
+            turn = rotation(float(angle))
             columns[k, :4] = (turn @ point.stiffness @ turn.T).ravel()
             columns[k, 4:8] = (turn @ point.damping @ turn.T).ravel()
             columns[k, 8] = point.load
@@ -496,12 +495,6 @@ def _seal(entry: SealEntry, description: MachineFile, name: str) -> Support:
 
 def _matrix(given: Matrix | None) -> Array:
     return np.zeros((2, 2)) if given is None else np.array(given)
-
-
-def _rotation(angle: float) -> Array:
-    """From a frame turned by `angle` [rad] to the machine's, (2, 2)."""
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([[cos, -sin], [sin, cos]])
 
 
 def _modes_at(found: Modes, index: int) -> list[dict[str, Any]]:

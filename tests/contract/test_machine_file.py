@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from command_line import CommandLine, strict
 
+from rotorsim.bearing.drawing import STANDARD_GRAVITY
 from rotorsim.errors import InputError, ScenarioError
 from rotorsim.files.machine import MachineFile, is_machine, load_machine
-from rotorsim.machine.statics import GRAVITY, static_equilibrium, weight
+from rotorsim.machine.statics import static_equilibrium, weight
 from rotorsim.study.machine import analyse_machine, destabilised_by_heating
 
 SHAFT = """
@@ -101,7 +102,7 @@ def test_two_supports_share_the_weight_by_statics():
     ends = [0, len(rotor.nodes) - 1]
     found = static_equilibrium(rotor, weight(rotor), ends, law, np.zeros((2, 2)))
     shaft = rotor.total_mass - 40.0
-    expected = GRAVITY * np.array([shaft / 2.0 + 30.0, shaft / 2.0 + 10.0])
+    expected = STANDARD_GRAVITY * np.array([shaft / 2.0 + 30.0, shaft / 2.0 + 10.0])
     assert found.reactions[:, 0] == pytest.approx(expected, rel=1e-9)
     assert np.abs(found.reactions[:, 1]).max() < 1e-9 * expected.sum()
 
@@ -130,7 +131,7 @@ stiffness = "1 MN/m"
     nodes = [0, len(rotor.nodes) // 2, len(rotor.nodes) - 1]
     law = [lambda load: (load / 1e13, np.eye(2) / 1e13)] * 3
     found = static_equilibrium(rotor, weight(rotor), nodes, law, np.zeros((3, 2)))
-    span = 0.5 * rotor.total_mass * GRAVITY
+    span = 0.5 * rotor.total_mass * STANDARD_GRAVITY
     # Shear adds some (d/l)^2 = 4e-4.
     expected = np.array([3.0, 10.0, 3.0]) / 8.0 * span
     assert found.reactions[:, 0] == pytest.approx(expected, rel=2e-3)
@@ -162,7 +163,7 @@ def test_films_carry_the_reactions_at_any_direction_of_the_load(tmp_path):
     down = tmp_path / "down.toml"
     down.write_text(SHAFT + supports, encoding="utf-8")
     (one,) = analyse_machine(load_machine(down), workers=1).values()
-    total = one.machine.rotor.total_mass * GRAVITY
+    total = one.machine.rotor.total_mass * STANDARD_GRAVITY
     side = tmp_path / "side.toml"
     pull = f'[[load]]\nat = "0.5 m"\nforce = ["0 N", "{total:.10g} N"]\n'
     vertical = SHAFT.replace("[operating]", "[operating]\nvertical = true")

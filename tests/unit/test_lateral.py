@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from rotorsim.bearing.drawing import STANDARD_GRAVITY
 from rotorsim.errors import InputError
 from rotorsim.machine.critical_map import critical_speed_map, principal_stiffness
 from rotorsim.machine.destabilising import decrement_curve
@@ -23,7 +24,7 @@ from rotorsim.machine.modes import modes
 from rotorsim.machine.peaks import Peak, find_peaks, node_at, probe_responses, response_speeds
 from rotorsim.machine.residual import residual_unbalance, unbalance_cases
 from rotorsim.machine.response import unbalance_response
-from rotorsim.machine.statics import GRAVITY, reactions_by_statics, weight
+from rotorsim.machine.statics import reactions_by_statics, weight
 from rotorsim.machine.support import ConstantSupport, Pedestal
 from rotorsim.model.machine import Clearance, Probe
 from rotorsim.model.shaft import Disc, Section
@@ -231,7 +232,7 @@ def test_unbalance_is_placed_to_excite_each_mode():
     nodes = [node_at(rotor, z) for z in (0.1, 1.3)]
     machine = Machine(rotor, [(node, ConstantSupport(5e7, 2e3)) for node in nodes])
     loads = reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
-    assert loads.sum() == pytest.approx(rotor.total_mass * GRAVITY)
+    assert loads.sum() == pytest.approx(rotor.total_mass * STANDARD_GRAVITY)
     found = modes(machine, np.linspace(10.0, 2500.0, 40))
     static = dict(zip(nodes, loads, strict=True))
     first, second = unbalance_cases(machine, found, static, 1000.0, 4.0)[:2]
