@@ -18,10 +18,7 @@ _HOW = {
 def refuse_path(value: object, key: str = "scenario") -> None:
     """Refuse a file's name, and all but a `Scenario`, where one is needed.
 
-    Raises
-    ------
-    InputError
-        `value` is a text, a path, or of another type.
+    Raises InputError: `value` is a text, a path, or of another type.
     """
     if isinstance(value, (str, Path)):
         raise InputError(
@@ -36,10 +33,7 @@ def refuse_path(value: object, key: str = "scenario") -> None:
 def file_path(value: object) -> Path:
     """Return the path of a file given by text or path; refuse None, open files and the like.
 
-    Raises
-    ------
-    InputError
-        `value` is neither.
+    Raises InputError: `value` is neither.
     """
     if not isinstance(value, (str, Path)):
         raise InputError("must be the name of a file", key="path", value=type(value).__name__)
@@ -49,18 +43,9 @@ def file_path(value: object) -> Path:
 def finite_number(value: Any, key: str, unit: str = "") -> float:
     """Return a finite number as a float; refuse text with a unit, None, arrays and the like.
 
-    Parameters
-    ----------
-    value : object
-    key : str
-        Name of the argument, for messages.
-    unit : str
-        SI unit that is meant, for messages.
-
-    Raises
-    ------
-    InputError
-        `value` is no number, or not finite.
+    key : Name of the argument, for messages.
+    unit : SI unit that is meant, for messages.
+    Raises InputError: `value` is no number, or not finite.
     """
     try:
         if isinstance(value, (str, bytes, bool)) or getattr(value, "ndim", 0):
@@ -83,9 +68,7 @@ def finite_number(value: Any, key: str, unit: str = "") -> float:
 def above_zero(prefix: str, **values: float) -> None:
     """Refuse values that are not finite and above zero; their keys are `prefix` and name.
 
-    Raises
-    ------
-    InputError
+    Raises InputError.
     """
     for name, value in values.items():
         if not (math.isfinite(value) and value > 0.0):

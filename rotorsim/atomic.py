@@ -14,19 +14,11 @@ from pathlib import Path
 def replacing(path: str | Path) -> Iterator[Path]:
     """Give a temporary path to write to; rename it to `path` when the block ends well.
 
-    Parameters
-    ----------
-    path : str or Path
-        Where the file is wanted; missing folders are made. What a symbolic link points to is
-        replaced, not the link, and an existing file keeps its permissions.
+    path : str or Path. Where the file is wanted; missing folders are made. What a symbolic link
+        points to is replaced, not the link, and an existing file keeps its permissions.
+    Yields Path : In the same folder and with the same suffix (some libraries choose the format by
+        it).
 
-    Yields
-    ------
-    Path
-        In the same folder and with the same suffix (some libraries choose the format by it).
-
-    Notes
-    -----
     A rename within one folder is atomic on POSIX and on Windows. The data are flushed to the disk
     first, so that a power cut cannot leave the new name on an empty file. If the block raises, the
     temporary file is removed and `path` stays as it was.

@@ -29,13 +29,8 @@ _told = False
 def compiled(**options: Any) -> Callable[[Function], Function]:
     """Decorate a function: compile it on first use and keep the machine code on disk.
 
-    Parameters
-    ----------
-    **options
-        Those of `numba.njit` but ``cache``.
+    **options : Those of `numba.njit` but ``cache``.
 
-    Notes
-    -----
     Where no folder can be written to, the function is compiled in every process; that is said once.
     A damaged file of the cache counts as missing.
     """

@@ -123,22 +123,12 @@ def is_missing(path: str | Path) -> bool:
 def read_bytes(path: str | Path, most: int, error: type[InputError] = InputError) -> bytes:
     """Return the contents of an ordinary file.
 
-    Parameters
-    ----------
     path : str or Path
-    most : int
-        Size of the largest file that is read [bytes].
-    error : type, optional
-        Of what is raised.
+    most : Size of the largest file that is read [bytes].
+    error : Of what is raised.
+    Raises InputError: There is no such file, it is a folder, a pipe or a device, is larger than
+        `most`, or cannot be read.
 
-    Raises
-    ------
-    InputError
-        There is no such file, it is a folder, a pipe or a device, is larger than `most`, or cannot
-        be read.
-
-    Notes
-    -----
     A pipe is refused before it is opened, which could wait for ever.
     """
     source = Path(path)

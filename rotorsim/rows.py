@@ -36,15 +36,9 @@ def number(value: float | None, digits: int = 4) -> str:
 class _Quantity:
     """How a quantity is shown: the value times `factor` plus `offset`, in `unit`.
 
-    Attributes
-    ----------
-    label, symbol : str
-        In words, and short for the head of a column.
-    unit : str
-    factor, offset : float
-        From SI to `unit`.
-    digits : int
-        In tables.
+    label, symbol : In words, and short for the head of a column.
+    factor, offset : From SI to `unit`.
+    digits : In tables.
     """
 
     label: str

@@ -84,12 +84,8 @@ _MILLIKELVIN = re.compile(r"\bmK\b")
 def readings(text: str, kind: str) -> list[str]:
     """Return the ways to read a unit, as text for Pint, the literal one first.
 
-    Parameters
-    ----------
-    text : str
-        The unit alone.
-    kind : str
-        Name of the kind of quantity, see `rotorsim.units.QUANTITIES`.
+    text : The unit alone.
+    kind : Name of the kind of quantity, see `rotorsim.units.QUANTITIES`.
 
     Examples
     --------

@@ -28,16 +28,11 @@ _MAX_TEXT = 100
 class _Kind:
     """A kind of physical quantity.
 
-    Parameters
-    ----------
-    name : str
-        As a message calls it, for example ``length``.
-    unit : str
-        SI unit in which values leave this module.
-    example : str
-        A valid text.
-    smallest, largest : float
-        Magnitudes [SI] outside of which a value other than 0 is taken for a slip of the unit.
+    name : As a message calls it, for example ``length``.
+    unit : SI unit in which values leave this module.
+    example : A valid text.
+    smallest, largest : Magnitudes [SI] outside of which a value other than 0 is taken for a slip of
+        the unit.
     """
 
     name: str
@@ -103,29 +98,13 @@ def parse_quantity(
 ) -> float:
     """Read one number with its unit.
 
-    Parameters
-    ----------
-    text : object
-        Should be text such as ``"100 um"``; anything else is refused with advice.
-    kind : str
-        What it must be: a name in `QUANTITIES`.
-    example : str, optional
-        Valid text to show in messages; by default the kind's own.
-    key, source : str, optional
-        Where the value stands, for messages.
+    text : Should be text such as ``"100 um"``; anything else is refused with advice.
+    kind : What it must be: a name in `QUANTITIES`.
+    example : Valid text to show in messages; by default the kind's own.
+    key, source : Where the value stands, for messages.
+    Returns: In the kind's SI unit; temperatures in K.
+    Raises InputError: Not a finite number with a unit of that kind.
 
-    Returns
-    -------
-    float
-        In the kind's SI unit; temperatures in K.
-
-    Raises
-    ------
-    InputError
-        Not a finite number with a unit of that kind.
-
-    Notes
-    -----
     A temperature has an offset ("40 degC" is 313.15 K), a temperature difference has none: in
     products and quotients degC means the difference ("J/(kg*degC)"). "mil" is a thousandth of an
     inch, "Hz" counts revolutions, "reyn" is lbf s/in^2, "lb" is the mass or the force that the kind
@@ -160,22 +139,11 @@ def parse_unit(
 ) -> tuple[float, float]:
     """Read a unit that stands alone, in a table's header for example.
 
-    Parameters
-    ----------
-    text, kind, key, source
-        As in `parse_quantity`.
-    example : str, optional
-        Valid unit to show in messages; by default the kind's SI unit.
-
-    Returns
-    -------
-    offset, factor : float
-        SI value = offset + factor * number; the offset is 0 but for temperatures.
-
-    Raises
-    ------
-    InputError
-        Not a unit of that kind.
+    text, kind, key, source : As in `parse_quantity`.
+    example : Valid unit to show in messages; by default the kind's SI unit.
+    Returns offset, factor : SI value = offset + factor * number; the offset is 0 but for
+        temperatures.
+    Raises InputError: Not a unit of that kind.
 
     Examples
     --------

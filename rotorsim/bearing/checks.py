@@ -26,33 +26,19 @@ _NOTICEABLE_HEATING = 10.0
 class DerivedNumbers:
     """Dimensionless and other derived numbers, at the supply temperature.
 
-    Attributes
-    ----------
-    surface_speed : float
-        U = omega R [m/s].
-    viscosity : float
-        mu [Pa s].
-    unit_load : float or None
-        W/(L D) [Pa]; None if the load is a result, or none.
-    sommerfeld_number : float or None
-        S = mu N L D (R/c)^2/W, N in rev/s; None if the load is a result.
-    reynolds_number : float
-        rho U c/mu.
-    taylor_number : float
-        Re sqrt(c/R); vortices above 41.2.
-    peclet_number : float
-        rho cp U c^2/(k R): heat carried along against heat conducted across the film.
-    nahme_number : float
-        beta mu U^2/k, beta = -d ln(mu)/dT: how strongly heating thins the film.
-    adiabatic_temperature_rise : float
-        Of the oil in one turn of a concentric film, nothing of it lost to the walls and the
-        viscosity constant [K].
-    warm_temperature : float
-        Estimated mean of the film, the viscosity following [K].
-    warm_viscosity : float
-        At that temperature [Pa s].
-    warm_reynolds_number, warm_taylor_number : float
-        With that viscosity.
+    surface_speed : U = omega R [m/s].
+    viscosity : mu [Pa s].
+    unit_load : W/(L D) [Pa]; None if the load is a result, or none.
+    sommerfeld_number : S = mu N L D (R/c)^2/W, N in rev/s; None if the load is a result.
+    reynolds_number : rho U c/mu.
+    taylor_number : Re sqrt(c/R); vortices above 41.2.
+    peclet_number : rho cp U c^2/(k R): heat carried along against heat conducted across the film.
+    nahme_number : beta mu U^2/k, beta = -d ln(mu)/dT: how strongly heating thins the film.
+    adiabatic_temperature_rise : Of the oil in one turn of a concentric film, nothing of it lost to
+        the walls and the viscosity constant [K].
+    warm_temperature : Estimated mean of the film, the viscosity following [K].
+    warm_viscosity : At that temperature [Pa s].
+    warm_reynolds_number, warm_taylor_number : With that viscosity.
     """
 
     surface_speed: float
@@ -80,14 +66,8 @@ def temperature_coefficient(case: Case, temperature: float) -> float:
 def derived_numbers(case: Case, speed: float) -> DerivedNumbers:
     """Numbers that tell what kind of problem a case is.
 
-    Parameters
-    ----------
-    case : Case
-    speed : float
-        [rad/s]
+    speed : [rad/s]
 
-    Notes
-    -----
     The temperature rise follows from the shear power of the concentric film,
     mu U^2/c times 2 pi R L, warming its flow, rho cp U c L/2: 4 pi mu omega R^2/(rho cp c^2).
     The warm film's is the same with the viscosity in the middle of the turn. Its mean is taken half
@@ -162,20 +142,12 @@ def regime_warnings(
 ) -> tuple[str, ...]:
     """Sentences on where the model leaves its range; none if it does not.
 
-    Parameters
-    ----------
-    case : Case
-    speed : float
-        [rad/s]
-    min_film_thickness : float, optional
-        Of the solution [m]; held against the bearing's roughness.
-    max_temperature : float, optional
-        Of the solution [K]; held against the oil's range.
-    mean_viscosity : float, optional
-        Of the solution [Pa s]: a hot film is thinner, and so its Reynolds number larger, than at
-        the supply temperature.
-    heat_balance : HeatBalance, optional
-        Of the solution; its part that goes into walls held at ambient temperature.
+    speed : [rad/s]
+    min_film_thickness : Of the solution [m]; held against the bearing's roughness.
+    max_temperature : Of the solution [K]; held against the oil's range.
+    mean_viscosity : Of the solution [Pa s]: a hot film is thinner, and so its Reynolds number
+        larger, than at the supply temperature.
+    heat_balance : Of the solution; its part that goes into walls held at ambient temperature.
     """
     numbers = derived_numbers(case, speed)
     thinning = 1.0 if mean_viscosity is None else numbers.viscosity / mean_viscosity

@@ -105,10 +105,7 @@ class _Column:
 def read(path: str | Path) -> xr.Dataset:
     """Read a CSV table.
 
-    Raises
-    ------
-    TableError
-        With the file, and the row and column where something is wrong.
+    Raises TableError: With the file, and the row and column where something is wrong.
     """
     source = file_path(path)
     lines, separator = _lines(_text(source), source)
@@ -268,10 +265,8 @@ def _factor(name: str, unit: str, cell: str, source: Path) -> float:
 def _decimal_comma(rows: list[_Line], columns: list[_Column], source: Path) -> bool:
     """Whether decimals are written with a comma, in a file whose columns something else separates.
 
-    Raises
-    ------
-    TableError
-        Commas stand only where thousands might be parted, or numbers have points as well.
+    Raises TableError: Commas stand only where thousands might be parted, or numbers have points as
+        well.
     """
     places = [column.place for column in columns if column.name in _KINDS]
     with_comma = [
@@ -445,10 +440,8 @@ def _ordered(
 def write(dataset: xr.Dataset, path: str | Path) -> Path:
     """Write the coefficients (SI) of every point; constant ones once, without a speed.
 
-    Raises
-    ------
-    TableError
-        The table has further dimensions (select first), or the file cannot be written.
+    Raises TableError: The table has further dimensions (select first), or the file cannot be
+        written.
     """
     target = Path(path)
     dims = dataset["kxx"].dims

@@ -35,19 +35,11 @@ _GREAT_HEATING = 100.0
 class DrawingNumbers:
     """What a drawing gives, as engineers compare bearings.
 
-    Attributes
-    ----------
-    diameter : float
-        [m]
-    length_to_diameter : float
-    diametral_clearance : float
-        [m]
-    clearance_ratio : float
-        c/R.
-    unit_load : float or None
-        W/(L D) [Pa]; None if the load is a result, or none.
-    weight_to_load : float or None
-        Rotor's weight per bearing over the load; None without one of them.
+    diameter : [m]
+    diametral_clearance : [m]
+    clearance_ratio : c/R.
+    unit_load : W/(L D) [Pa]; None if the load is a result, or none.
+    weight_to_load : Rotor's weight per bearing over the load; None without one of them.
     """
 
     diameter: float
@@ -61,11 +53,7 @@ class DrawingNumbers:
 def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbers:
     """Numbers of a case's drawing.
 
-    Parameters
-    ----------
-    case : Case
-    rotor_mass : float, optional
-        Per bearing [kg].
+    rotor_mass : Per bearing [kg].
 
     Examples
     --------
@@ -96,11 +84,7 @@ def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbe
 def drawing_warnings(case: Case, rotor_mass: float | None = None) -> tuple[str, ...]:
     """Sentences on what is unlike bearings that run; none if nothing is.
 
-    Parameters
-    ----------
-    case : Case
-    rotor_mass : float, optional
-        Per bearing [kg].
+    rotor_mass : Per bearing [kg].
     """
     return (
         *_size_warnings(drawing_numbers(case, rotor_mass)),
@@ -112,11 +96,7 @@ def drawing_warnings(case: Case, rotor_mass: float | None = None) -> tuple[str, 
 def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
     """Sentences on what heating is estimated to do; none for an isothermal case.
 
-    Parameters
-    ----------
-    case : Case
-    speed : float
-        [rad/s]
+    speed : [rad/s]
     """
     if case.thermal.model is not ThermalModel.THD:
         return ()

@@ -56,22 +56,13 @@ class FilmDynamics:
 
     Call it with any complex s [1/s]: the film's forces of a motion q exp(s t) are -A(s) q.
 
-    Parameters
-    ----------
-    turn : (q, q) array
-        From the film's frame to the load frame.
-    speed : float
-        Of the shaft [rad/s].
-    stiffness, damping : (q, q) arrays
-        K [N/m] and C [N s/m] without stored oil, load frame.
-    stored_oil : callable or None
-        A(s) in the film's frame, less K + s C there; None where the film stores nothing.
-    mass : (q, q) array or None
-        Of the pads; None without.
-    names : tuple of str
-        Of the displacements q.
-    coupled : int
-        How many of them, the first ones, are the journal's.
+    turn : (q, q) array. From the film's frame to the load frame.
+    speed : Of the shaft [rad/s].
+    stiffness, damping : (q, q) arrays. K [N/m] and C [N s/m] without stored oil, load frame.
+    stored_oil : A(s) in the film's frame, less K + s C there; None where the film stores nothing.
+    mass : (q, q) array or None. Of the pads; None without.
+    names : Of the displacements q.
+    coupled : How many of them, the first ones, are the journal's.
     """
 
     turn: Array
@@ -141,10 +132,7 @@ class FilmDynamics:
     def threshold(self, *, load: float, radial_clearance: float) -> WhirlThreshold:
         """Return the verdict on a rigid rotor, with all of the film's and the pads' dynamics.
 
-        Parameters
-        ----------
-        load, radial_clearance : float
-            [N], [m]; for the dimensionless critical mass.
+        load, radial_clearance : [N], [m]; for the dimensionless critical mass.
         """
         if not self.has_pads:
             stiffness, damping, _ = self.stated_coefficients()
@@ -230,15 +218,10 @@ def film_dynamics(
 ) -> FilmDynamics:
     """Return the dynamic stiffness of a solved film.
 
-    Parameters
-    ----------
-    solution : FilmSolution
-    turn : (q, q) array
-        From the film's frame to the load frame.
-    following : (q, q) array, optional
-        Stiffness with the viscosity following slow displacements, film frame [N/m].
-    rotations : bool
-        Add the journal's rotations, theta_x and theta_y; `turn` turns them as well.
+    turn : (q, q) array. From the film's frame to the load frame.
+    following : (q, q) array. Stiffness with the viscosity following slow displacements, film frame
+        [N/m].
+    rotations : Add the journal's rotations, theta_x and theta_y; `turn` turns them as well.
     """
     state, speed = solution.state, solution.problem.speed
     stiffness, damping = linearize(state, rotations=rotations)
@@ -280,11 +263,7 @@ def with_rotations(solution: FilmSolution, turn: Array) -> FilmDynamics:
 def full_coefficients(dynamics: FilmDynamics, frequency_ratio: float | None) -> FullCoefficients:
     """Return K, C and M over journal and pads, load frame.
 
-    Parameters
-    ----------
-    dynamics : FilmDynamics
-    frequency_ratio : float or None
-        Whirl over shaft frequency at which they are wanted; None: they hold at any.
+    frequency_ratio : Whirl over shaft frequency at which they are wanted; None: they hold at any.
     """
     stiffness, damping = dynamics.all_coefficients(frequency_ratio or _DEFAULT_RATIO)
     mass = np.zeros_like(stiffness) if dynamics.mass is None else dynamics.mass
@@ -380,10 +359,7 @@ def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
 
     A film that stores oil has more than the rotor: up to four of the least damped pairs are given.
 
-    Raises
-    ------
-    ArithmeticError
-        None was found.
+    Raises ArithmeticError: None was found.
     """
     if dynamics.stored_oil is None:
         return _pad_eigenvalues(dynamics, mass)
@@ -417,10 +393,7 @@ def refine_eigenvalue(
 
     Newton's method on det(law(s)) divided by the product of (s - known).
 
-    Raises
-    ------
-    ArithmeticError
-        It did not converge.
+    Raises ArithmeticError: It did not converge.
     """
     s = complex(guess)
     for _ in range(_NEWTON_STEPS):

@@ -20,24 +20,12 @@ if TYPE_CHECKING:
 class Coefficients:
     """Linearised film (SI, load frame).
 
-    Attributes
-    ----------
-    stiffness : (2, 2) array
-        K_ij = -dF_i/dx_j [N/m].
-    damping : (2, 2) array
-        C_ij = -dF_i/dv_j [N s/m].
-    speed : float
-        Of the shaft [rad/s].
-    load : float or None
-        Static load [N].
-    radial_clearance : float or None
-        [m]
-    thermal_model : str or None
-
-    Raises
-    ------
-    InputError
-        A matrix is not 2 x 2 or not finite, or the speed is below zero.
+    stiffness : (2, 2) array. K_ij = -dF_i/dx_j [N/m].
+    damping : (2, 2) array. C_ij = -dF_i/dv_j [N s/m].
+    speed : Of the shaft [rad/s].
+    load : Static load [N].
+    radial_clearance : [m]
+    Raises InputError: A matrix is not 2 x 2 or not finite, or the speed is below zero.
     """
 
     stiffness: NDArray[np.float64]
@@ -60,10 +48,7 @@ class Coefficients:
     def dimensionless(self) -> Coefficients:
         """K c/W and C c omega/W, with unit load, clearance and speed.
 
-        Raises
-        ------
-        InputError
-            The load or the clearance is not known.
+        Raises InputError: The load or the clearance is not known.
 
         Examples
         --------
@@ -94,21 +79,13 @@ _SPEED_TOLERANCE = 1e-9
 class CoefficientInterpolator:
     """Speed to (K, C), vectorised; exact at the tabulated speeds, never beyond them.
 
-    Attributes
-    ----------
-    speeds : (n,) array
-        Tabulated speeds [rad/s], ascending.
-    converged : (n,) bool array
-        Which of them may be used.
-    cubic : (4, n, 9) array
-        Coefficients, highest power first, of the cubic in ``speed - speeds[i]`` for the interval
-        above speed i (constant for the last): kxx kxy kyx kyy cxx cxy cyx cyy load. A compiled
-        integrator can evaluate these itself.
-    constant : bool
-        The coefficients hold at any speed.
+    speeds : (n,) array. Tabulated speeds [rad/s], ascending.
+    converged : (n,) bool array. Which of them may be used.
+    cubic : (4, n, 9) array. Coefficients, highest power first, of the cubic in ``speed -
+        speeds[i]`` for the interval above speed i (constant for the last): kxx kxy kyx kyy cxx cxy
+        cyx cyy load. A compiled integrator can evaluate these itself.
+    constant : The coefficients hold at any speed.
 
-    Notes
-    -----
     PCHIP (Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5, 1984) overshoots nowhere, so it makes
     no stiffness or damping that its neighbours do not have. A point that did not converge cuts the
     curve: nothing is interpolated across it.
@@ -191,22 +168,10 @@ class CoefficientInterpolator:
     ) -> tuple[Array, Array]:
         """Stiffness [N/m] and damping [N s/m] at `speed` [rad/s].
 
-        Parameters
-        ----------
-        speed : array
-        gaps : {"raise", "nan"}
-            What to do next to points that did not converge.
-
-        Returns
-        -------
-        stiffness, damping : speed.shape + (2, 2) arrays
-
-        Raises
-        ------
-        OutOfRangeError
-            A speed lies outside the tabulated ones.
-        TableError
-            A neighbour did not converge and `gaps` is "raise".
+        gaps : {"raise", "nan"}. What to do next to points that did not converge.
+        Returns stiffness, damping : speed.shape + (2, 2) arrays
+        Raises OutOfRangeError: A speed lies outside the tabulated ones.
+        Raises TableError: A neighbour did not converge and `gaps` is "raise".
         """
         values = self.columns(speed, gaps)
         shape = (*values.shape[:-1], 2, 2)

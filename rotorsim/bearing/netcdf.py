@@ -31,13 +31,8 @@ _MAX_LOADED = 500_000_000
 def write(dataset: xr.Dataset, path: str | Path) -> Path:
     """Write `dataset`; an existing file is replaced only by a complete one.
 
-    Raises
-    ------
-    TableError
-        The file cannot be written.
+    Raises TableError: The file cannot be written.
 
-    Notes
-    -----
     The file is made in memory first: the HDF5 library crashes where a disk is full. Its last bytes
     are the SHA-256 of all others; every block of numbers has a checksum of HDF5 as well, which
     stays when another program writes the file anew.
@@ -61,10 +56,7 @@ def write(dataset: xr.Dataset, path: str | Path) -> Path:
 def read(path: str | Path) -> xr.Dataset:
     """Read a table's dataset into memory.
 
-    Raises
-    ------
-    TableError
-        The file is missing, damaged, not a table, or of a newer format.
+    Raises TableError: The file is missing, damaged, not a table, or of a newer format.
     """
     source = file_path(path)
     if is_missing(source):

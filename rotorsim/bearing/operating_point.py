@@ -68,12 +68,8 @@ class FilmFields:
 class FrequencyCoefficients:
     """Stiffness and damping over the whirl frequency, load frame.
 
-    Attributes
-    ----------
-    frequency_ratio : (n,) array
-        Whirl frequency over shaft frequency, ascending.
-    stiffness, damping : (n, 2, 2) arrays
-        [N/m], [N s/m]
+    frequency_ratio : (n,) array. Whirl frequency over shaft frequency, ascending.
+    stiffness, damping : (n, 2, 2) arrays [N/m], [N s/m]
     """
 
     frequency_ratio: Array
@@ -85,15 +81,12 @@ class FrequencyCoefficients:
 class FullCoefficients:
     """K, C and M over all degrees of freedom of a bearing, load frame.
 
-    Attributes
-    ----------
-    names : tuple of str
-        Degrees of freedom: x, y [m]; theta_x, theta_y, the journal's rotations about x and y
+    names : Degrees of freedom: x, y [m]; theta_x, theta_y, the journal's rotations about x and y
         through the bearing's mid-plane [rad]. Then of each loaded pad, counted from 1, tilt_1
         [rad], and where its pivot has them pivot_1 (outwards) [m] and pitch_1 [rad].
-    stiffness, damping, mass : (q, q) arrays
-        K_ij = -dQ_i/dq_j, C_ij = -dQ_i/dq_j-dot, Q the film's forces [N] and moments [N m] on
-        journal and pads, and the pivots' on the pads. The mass is the pads' own.
+    stiffness, damping, mass : (q, q) arrays. K_ij = -dQ_i/dq_j, C_ij = -dQ_i/dq_j-dot, Q the film's
+        forces [N] and moments [N m] on journal and pads, and the pivots' on the pads. The mass is
+        the pads' own.
     """
 
     names: tuple[str, ...]
@@ -123,23 +116,14 @@ def condensed(law: NDArray[np.complex128], kept: int) -> NDArray[np.complex128]:
 class PadResult:
     """One tilting pad at its equilibrium.
 
-    Attributes
-    ----------
-    tilt : float
-        In the direction of rotation [rad].
-    pivot_displacement : float
-        Outwards [m]; 0 for a rigid pivot.
-    pitch : float
-        About the tangent at the pivot [rad].
-    load : float
-        Force on the pivot [N].
-    max_pressure : float
-        Gauge [Pa].
-    max_temperature : float
-        Of the pad's surface [K]; isothermal: the supply's.
-    unloaded : bool
-        Its film cannot be balanced at positive pressure: the pad floats or flutters. It is kept out
-        of the equilibrium and the coefficients; its tilt is arbitrary.
+    tilt : In the direction of rotation [rad].
+    pivot_displacement : Outwards [m]; 0 for a rigid pivot.
+    pitch : About the tangent at the pivot [rad].
+    load : Force on the pivot [N].
+    max_pressure : Gauge [Pa].
+    max_temperature : Of the pad's surface [K]; isothermal: the supply's.
+    unloaded : Its film cannot be balanced at positive pressure: the pad floats or flutters. It is
+        kept out of the equilibrium and the coefficients; its tilt is arbitrary.
     """
 
     tilt: float
@@ -288,11 +272,8 @@ _NESTED = ("heat_balance", "frequency_coefficients", "coefficients_full")
 def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
     """Every scalar and coefficient of `point` (SI); the fields are left out.
 
-    Returns
-    -------
-    dict
-        Keys are the attribute names of `OperatingPoint`; enumerations as their values, arrays as
-        nested lists.
+    Returns: Keys are the attribute names of `OperatingPoint`; enumerations as their values, arrays
+        as nested lists.
     """
     record: dict[str, Any] = {}
     for entry in dataclasses.fields(point):
@@ -310,10 +291,7 @@ def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
 def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
     """Inverse of `point_to_dict`.
 
-    Raises
-    ------
-    KeyError, TypeError, ValueError
-        If `record` was not made by `point_to_dict`.
+    Raises KeyError, TypeError, ValueError: If `record` was not made by `point_to_dict`.
     """
     from ..film.heat import HeatBalance  # with its compiled kernels: not to be loaded for a table
 

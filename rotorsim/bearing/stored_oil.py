@@ -33,14 +33,9 @@ _TOLERANCE = 1e-9
 class FrequencyScan:
     """A(i nu) of a bearing's journal over the whirl frequency, (2, 2).
 
-    Parameters
-    ----------
-    law : callable
-        A(s) [N/m] at any s [1/s].
-    speed : float
-        Of the shaft [rad/s].
-    curve : callable
-        A(i nu) at arrays of nu over the shaft's frequency, interpolated.
+    law : A(s) [N/m] at any s [1/s].
+    speed : Of the shaft [rad/s].
+    curve : A(i nu) at arrays of nu over the shaft's frequency, interpolated.
     """
 
     law: Callable[[complex], ComplexArray]

@@ -20,17 +20,10 @@ _ROUNDING = 1e-10
 class WhirlThreshold:
     """Verdict on a rigid rotor at one operating point.
 
-    Attributes
-    ----------
-    stability : Stability
-    critical_mass : float or None
-        Mass per bearing at the threshold [kg]; None without a threshold.
-    whirl_frequency : float or None
-        Frequency of the undamped whirl at the threshold [rad/s].
-    whirl_frequency_ratio : float or None
-        Whirl frequency over shaft frequency [-].
-    critical_mass_dimensionless : float or None
-        M c omega^2/W; needs the load and the clearance.
+    critical_mass : Mass per bearing at the threshold [kg]; None without a threshold.
+    whirl_frequency : Frequency of the undamped whirl at the threshold [rad/s].
+    whirl_frequency_ratio : Whirl frequency over shaft frequency [-].
+    critical_mass_dimensionless : M c omega^2/W; needs the load and the clearance.
     """
 
     stability: Stability
@@ -61,16 +54,10 @@ class _RouthCoefficients:
     Stable if and only if `trace_damping`, `cross` and `det_stiffness` are all above zero and
     ``det_damping * equivalent_stiffness > mass * det_shifted``.
 
-    Attributes
-    ----------
-    trace_damping, det_damping, det_stiffness : arrays
-    cross : array
-        K_xx C_yy + K_yy C_xx - K_xy C_yx - K_yx C_xy, the coefficient of s; 0 where it is of the
-        size of rounding errors (a film without direct stiffness: full Sommerfeld's).
-    equivalent_stiffness : array
-        K_e = cross/trace_damping [N/m] (Dal Eq. 23).
-    det_shifted : array
-        det(K - K_e I) [N^2/m^2], gamma^2 times det C (Dal Eq. 24).
+    cross : K_xx C_yy + K_yy C_xx - K_xy C_yx - K_yx C_xy, the coefficient of s; 0 where it is of
+        the size of rounding errors (a film without direct stiffness: full Sommerfeld's).
+    equivalent_stiffness : K_e = cross/trace_damping [N/m] (Dal Eq. 23).
+    det_shifted : det(K - K_e I) [N^2/m^2], gamma^2 times det C (Dal Eq. 24).
     """
 
     trace_damping: Array
@@ -144,21 +131,10 @@ def rigid_thresholds(
 ) -> WhirlThresholds:
     """Critical mass and whirl frequency of a rigid rotor over whole arrays.
 
-    Parameters
-    ----------
-    stiffness, damping : (..., 2, 2) arrays
-        [N/m], [N s/m]
-    speed : array
-        Shaft speed [rad/s], broadcast against the leading dimensions.
-    load, radial_clearance : arrays, optional
-        [N], [m]; for the dimensionless critical mass.
+    stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
+    speed : Shaft speed [rad/s], broadcast against the leading dimensions.
+    load, radial_clearance : [N], [m]; for the dimensionless critical mass.
 
-    Returns
-    -------
-    WhirlThresholds
-
-    Notes
-    -----
     m x'' + C x' + K x = 0 has the characteristic polynomial
 
         m^2 s^4 + m tr(C) s^3 + (m tr(K) + det C) s^2 + q s + det K,
@@ -215,19 +191,10 @@ def rigid_threshold(
 ) -> WhirlThreshold:
     """Critical mass and whirl frequency of a rigid rotor at one operating point.
 
-    Parameters
-    ----------
-    stiffness, damping : (2, 2) arrays
-        [N/m], [N s/m]
-    speed : float
-        [rad/s]
-    load, radial_clearance : float, optional
-        [N], [m]; for the dimensionless critical mass.
-
-    Raises
-    ------
-    InputError
-        A coefficient is not finite, or the speed is not above zero.
+    stiffness, damping : (2, 2) arrays [N/m], [N s/m]
+    speed : [rad/s]
+    load, radial_clearance : [N], [m]; for the dimensionless critical mass.
+    Raises InputError: A coefficient is not finite, or the speed is not above zero.
 
     Examples
     --------
@@ -264,15 +231,10 @@ def flexible_critical_mass(
 ) -> Array:
     """Critical disc mass of a symmetric Jeffcott rotor with massless journals, per bearing [kg].
 
-    Parameters
-    ----------
-    stiffness, damping : (..., 2, 2) arrays
-        Of one bearing [N/m], [N s/m].
-    shaft_stiffness : array
-        Of the shaft at the disc, per bearing (half the shaft's) [N/m]; infinity: a rigid shaft.
+    stiffness, damping : (..., 2, 2) arrays. Of one bearing [N/m], [N s/m].
+    shaft_stiffness : Of the shaft at the disc, per bearing (half the shaft's) [N/m]; infinity: a
+        rigid shaft.
 
-    Notes
-    -----
     At the threshold the film reacts like a spring K_e with the whirl frequency nu of the rigid
     rotor; the shaft lies in series with it, so that m nu^2 = K_e k_s/(K_e + k_s) (Lund's argument,
     J. Eng. Ind. 96, 1974). The whirl frequency ratio does not change. NaN without a threshold.

@@ -104,20 +104,11 @@ def check_workers(workers: int | None) -> None:
 def check_file(path: Path, suffix: str = "", source: Path | None = None) -> None:
     """Refuse, before any work is done, a file that could not or must not be written.
 
-    Parameters
-    ----------
-    path : Path
-        What would be written.
-    suffix : str
-        How its name must end, ``.nc`` for example.
-    source : Path, optional
-        The input, which no output may replace.
-
-    Raises
-    ------
-    InputError
-        It is a directory or a device, ends otherwise than in `suffix`, is the input itself, or
-        its folder cannot be made or written to.
+    path : What would be written.
+    suffix : How its name must end, ``.nc`` for example.
+    source : The input, which no output may replace.
+    Raises InputError: It is a directory or a device, ends otherwise than in `suffix`, is the input
+        itself, or its folder cannot be made or written to.
     """
     if path.is_dir() or not path.name:
         raise InputError("is a directory; give a file", key="--output", value=str(path))

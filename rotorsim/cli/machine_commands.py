@@ -77,10 +77,7 @@ def machine_stability(
 ) -> int:
     """Show modes, critical speeds, thresholds and verdict of a machine.
 
-    Raises
-    ------
-    InputError
-        One of the options `own`, which describe a rotor, is given.
+    Raises InputError: One of the options `own`, which describe a rotor, is given.
     """
     for key, value in own.items():
         if value is not None:

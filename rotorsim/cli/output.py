@@ -42,14 +42,9 @@ def as_typed(path: Path) -> str:
 class Output:
     """One command's way to talk.
 
-    Parameters
-    ----------
-    json : bool
-        One JSON document on stdout and nothing else there.
-    quiet : bool
-        Neither progress nor tables; errors still show.
-    kept : list of str
-        What an interruption would leave behind, for the farewell.
+    json : One JSON document on stdout and nothing else there.
+    quiet : Neither progress nor tables; errors still show.
+    kept : What an interruption would leave behind, for the farewell.
     """
 
     json: bool = False

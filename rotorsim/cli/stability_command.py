@@ -139,10 +139,7 @@ class _Work:
     def table(self, source: Path) -> CoefficientTable | None:
         """Table at `source`; None where it is no table.
 
-        Raises
-        ------
-        InputError
-            It is neither a table nor a scenario, or not as the options say.
+        Raises InputError: It is neither a table nor a scenario, or not as the options say.
         """
         from ..files.formats import is_table
 

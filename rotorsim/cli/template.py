@@ -106,15 +106,9 @@ initial_displacement = ["1 um", "0 um"]
 def scenario_text(title: str, profile: str, target: tuple[str, str | float], iso_vg: float) -> str:
     """TOML text of a new scenario.
 
-    Parameters
-    ----------
-    title : str
-    profile : str
-        ``plain``, ``grooved``, ``elliptical`` or ``tilting_pad``.
-    target : (str, value)
-        ``("load", "10 kN")`` or ``("eccentricity", 0.5)``.
-    iso_vg : float
-        Grade of the oil.
+    profile : ``plain``, ``grooved``, ``elliptical`` or ``tilting_pad``.
+    target : (str, value). ``("load", "10 kN")`` or ``("eccentricity", 0.5)``.
+    iso_vg : Grade of the oil.
     """
     kind, value = target
     # What a user typed goes into quotes in the file: nothing in it may end them.

@@ -39,11 +39,8 @@ class _Unsuited(Exception):
 def read_arrays(source: Path) -> dict[str, NDArray[Any]]:
     """Arrays of a .npz or .mat file (up to version 7) by name, sparse ones as full matrices.
 
-    Raises
-    ------
-    InputError
-        The file cannot be read, is damaged, holds something else than numbers, or arrays that are
-        too large for a rotor.
+    Raises InputError: The file cannot be read, is damaged, holds something else than numbers, or
+        arrays that are too large for a rotor.
     """
     data = read_bytes(source, _MAX_BYTES)
     suffix = source.suffix.lower()

@@ -22,18 +22,12 @@ RPM = 30.0 / np.pi
 class Curve:
     """Converged coefficients of one bearing over speed (SI, load frame).
 
-    Attributes
-    ----------
-    name : str
-        For a file's name: what tells this curve from the others of its table; empty if it is alone.
-    facts : tuple of str
-        The same in words, for the file's head.
-    speed : (n,) array
-        [rad/s]
-    stiffness, damping : (n, 2, 2) arrays
-        [N/m], [N s/m]
-    constant : bool
-        They hold at any speed.
+    name : For a file's name: what tells this curve from the others of its table; empty if it is
+        alone.
+    facts : The same in words, for the file's head.
+    speed : (n,) array [rad/s]
+    stiffness, damping : (n, 2, 2) arrays [N/m], [N s/m]
+    constant : They hold at any speed.
     """
 
     name: str
@@ -47,10 +41,7 @@ class Curve:
 def curves(table: CoefficientTable) -> Iterator[Curve]:
     """Every curve of `table` that has a converged point.
 
-    Raises
-    ------
-    TableError
-        No point of the table converged.
+    Raises TableError: No point of the table converged.
     """
     values = {name: table.dataset[name].values for name in table.choices}
     title = str(table.dataset.attrs.get("title", ""))

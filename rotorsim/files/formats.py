@@ -74,32 +74,16 @@ def write_table(
 ) -> list[Path]:
     """Write a table in one format.
 
-    Parameters
-    ----------
-    table : CoefficientTable
-    kind : str
-        One of `FORMATS`. ``ross`` (ROSS 3), ``ross2`` (ROSS 2) and ``txt`` hold one bearing in a
+    kind : One of `FORMATS`. ``ross`` (ROSS 3), ``ross2`` (ROSS 2) and ``txt`` hold one bearing in a
         file: a table of several thermal models or clearances gives several files.
-    folder : str or Path
-        Made if it is missing.
-    name : str
-        Of the files, without suffix.
-    load_direction : float, optional
-        For ``ross`` and ``ross2``: where the static load points in the frame of ROSS [rad], from
-        x towards y
-        (with the rotation); by default along -y, the weight. The other formats are in the load
-        frame.
-
-    Returns
-    -------
-    list of Path
-        What was written.
-
-    Raises
-    ------
-    TableError
-        No such format, nothing in the table converged, a CSV of a table with further dimensions,
-        or a `load_direction` for another format than ``ross``.
+    folder : str or Path. Made if it is missing.
+    name : Of the files, without suffix.
+    load_direction : For ``ross`` and ``ross2``: where the static load points in the frame of ROSS
+        [rad], from x towards y (with the rotation); by default along -y, the weight. The other
+        formats are in the load frame.
+    Returns: What was written.
+    Raises TableError: No such format, nothing in the table converged, a CSV of a table with further
+        dimensions, or a `load_direction` for another format than ``ross``.
     """
     if kind not in FORMATS:
         raise TableError(f"must be one of {', '.join(FORMATS)}", key="format", value=kind)
@@ -133,21 +117,13 @@ def read_table(
 ) -> CoefficientTable:
     """Read a table from netCDF (``.nc``), CSV (``.csv``) or a bearing saved by ROSS.
 
-    Parameters
-    ----------
     path : str or Path
-    load_direction : float, optional
-        For a bearing saved by ROSS: where the static load points in its frame [rad], from x
-        towards y. By default what the file says ([rotorsim] load_direction, as `write_table`
+    load_direction : For a bearing saved by ROSS: where the static load points in its frame [rad],
+        from x towards y. By default what the file says ([rotorsim] load_direction, as `write_table`
         writes it), and if it says nothing along -y, the weight.
-    bearing : str, optional
-        Tag or table name of one bearing in a file of ROSS that holds several.
-
-    Raises
-    ------
-    TableError
-        No such file, not readable as what its name says, several bearings and none chosen, or a
-        `load_direction` for a table in the load frame or against what the file says.
+    bearing : Tag or table name of one bearing in a file of ROSS that holds several.
+    Raises TableError: No such file, not readable as what its name says, several bearings and none
+        chosen, or a `load_direction` for a table in the load frame or against what the file says.
     """
     source = file_path(path)
     suffix = source.suffix.lower()

@@ -55,13 +55,7 @@ _ROTATIONS = ("clockwise", "counterclockwise")
 
 @dataclass(frozen=True)
 class RotorDrawing:
-    """A shaft from its drawing, with the unbalances that it is given.
-
-    Attributes
-    ----------
-    beam : Beam
-    unbalance : tuple of UnbalanceEntry
-    """
+    """A shaft from its drawing, with the unbalances that it is given."""
 
     beam: Beam
     unbalance: tuple[UnbalanceEntry, ...] = ()

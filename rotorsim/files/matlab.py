@@ -17,8 +17,6 @@ if TYPE_CHECKING:
 def write(table: CoefficientTable, path: Path) -> Path:
     """Write everything: ``K(:,:,i,j,k)`` and ``C`` are 2 x 2 matrices.
 
-    Notes
-    -----
     The indices after the first two are speed, clearance (and any further dimension), thermal model:
     the dimensions of the table, last to first. ``dimensions`` in the file lists them.
     """

@@ -50,10 +50,7 @@ _WEIGHT_FRAME = (
 def _frame_of_ross(load_direction: float = _WEIGHT) -> tuple[str, ...]:
     """Lines that say what coefficients in the frame of ROSS mean.
 
-    Parameters
-    ----------
-    load_direction : float
-        Where the static load points [rad], from x of ROSS towards its y.
+    load_direction : Where the static load points [rad], from x of ROSS towards its y.
     """
     degrees = _in_degrees(load_direction)
     if degrees == _in_degrees(_WEIGHT):
@@ -78,10 +75,7 @@ def _in_degrees(load_direction: float) -> float:
 
     Rounded to 1e-10, so that what a file says of it is what its numbers were turned by.
 
-    Raises
-    ------
-    TableError
-        Not finite.
+    Raises TableError: Not finite.
 
     Examples
     --------
@@ -96,12 +90,8 @@ def _in_degrees(load_direction: float) -> float:
 def to_ross(matrices: NDArray[np.float64], load_direction: float = _WEIGHT) -> NDArray[np.float64]:
     """Turn (..., 2, 2) matrices from the load frame to the frame of ROSS.
 
-    Parameters
-    ----------
-    matrices : (..., 2, 2) array
-        Stiffness or damping.
-    load_direction : float
-        Where the static load points [rad], from x of ROSS towards its y.
+    matrices : (..., 2, 2) array. Stiffness or damping.
+    load_direction : Where the static load points [rad], from x of ROSS towards its y.
 
     Examples
     --------
@@ -152,14 +142,8 @@ _AXES = {
 def write(curve: Curve, path: Path, load_direction: float = _WEIGHT, *, version: int = 3) -> Path:
     """Write one curve as a file for ``ross.BearingElement.load``.
 
-    Parameters
-    ----------
-    curve : Curve
-    path : Path
-    load_direction : float
-        That of the static load in the frame of ROSS [rad], from x towards y.
-    version : {3, 2}
-        Of the ROSS that will read the file.
+    load_direction : That of the static load in the frame of ROSS [rad], from x towards y.
+    version : Of the ROSS that will read the file.
     """
     axis, *said = _AXES[version]
     head = [
@@ -220,20 +204,12 @@ def read(
 ) -> CoefficientTable:
     """Table of a bearing that ROSS, or `write`, saved to `path` (TOML or JSON).
 
-    Parameters
-    ----------
     path : str or Path
-    load_direction : float, optional
-        Where the static load points in the frame of ROSS [rad], from x towards y; by default what
-        the file says, and if it says nothing along -y.
-    bearing : str, optional
-        Its tag, or the name of its table, in a file of several.
-
-    Raises
-    ------
-    TableError
-        Not such a file, several bearings and none chosen, coefficients over both speed and
-        frequency of the whirl, or that are no numbers, or a file that says another
+    load_direction : Where the static load points in the frame of ROSS [rad], from x towards y; by
+        default what the file says, and if it says nothing along -y.
+    bearing : Its tag, or the name of its table, in a file of several.
+    Raises TableError: Not such a file, several bearings and none chosen, coefficients over both
+        speed and frequency of the whirl, or that are no numbers, or a file that says another
         `load_direction`.
     """
     source = file_path(path)
@@ -363,10 +339,7 @@ def _table(
 def _axis(bearing: dict[str, Any], source: Path) -> str | None:
     """Return the key of the speeds or frequencies; None for constant coefficients.
 
-    Raises
-    ------
-    TableError
-        The coefficients depend on both.
+    Raises TableError: The coefficients depend on both.
     """
     speed, frequency = (bearing.get(name) is not None for name in ("speed", "frequency"))
     if speed and frequency:

@@ -33,18 +33,10 @@ def load_rotor(
     The damping matrix may be called C as well. D (or C), G and H may be left out (zero),
     ``dofs_per_node`` too (4). An array of another name is refused: it might be one that counts.
 
-    Parameters
-    ----------
     path : str or Path
-    bearing_nodes : sequence of int, optional
-        In place of the file's, counted from 0.
-    dofs_per_node : int, optional
-        In place of the file's.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read, or its matrices do not make a rotor.
+    bearing_nodes : In place of the file's, counted from 0.
+    dofs_per_node : In place of the file's.
+    Raises InputError: The file cannot be read, or its matrices do not make a rotor.
     """
     source = file_path(path)
     data = _read(source)

@@ -56,24 +56,17 @@ class BearingProfile(StrEnum):
 class Groove:
     """An axial supply groove.
 
-    Parameters
-    ----------
-    center : float
-        Middle of the groove, angle from the load line [rad].
-    extent : float
-        Circumferential extent [rad].
-    length : float or None
-        Axial length [m], centred; None: the bearing's whole length.
-    supply_pressure : float
-        Gauge pressure held in the groove [Pa].
-    supply_temperature : float or None
-        Temperature of the oil supplied [K]; None: the scenario's supply temperature.
-    sealed_ends : bool
-        Whether plugs close the ends of a groove that runs the bearing's whole length. If not, oil
-        leaks over `end_land` at each end, through the clearance; the groove's pressure holds.
-    end_land : float or None
-        Axial length over which the pressure falls at an end that is not sealed [m]; None: 1 % of
-        the bearing's length.
+    center : Middle of the groove, angle from the load line [rad].
+    extent : Circumferential extent [rad].
+    length : Axial length [m], centred; None: the bearing's whole length.
+    supply_pressure : Gauge pressure held in the groove [Pa].
+    supply_temperature : Temperature of the oil supplied [K]; None: the scenario's supply
+        temperature.
+    sealed_ends : Whether plugs close the ends of a groove that runs the bearing's whole length. If
+        not, oil leaks over `end_land` at each end, through the clearance; the groove's pressure
+        holds.
+    end_land : Axial length over which the pressure falls at an end that is not sealed [m]; None: 1
+        % of the bearing's length.
     """
 
     center: Angle
@@ -113,14 +106,9 @@ class Arc:
     centred, the film is thinnest, ``(1 - preload) * radial_clearance``, at the angle
     ``start + offset * (end - start)``.
 
-    Parameters
-    ----------
-    start, end : float
-        Ends of the lobe, angles from the load line [rad], ``end > start``.
-    preload : float
-        0 (concentric lobe) to below 1.
-    offset : float
-        Where along the arc the lobe comes nearest, 0 to 1; 0.5 for a symmetric lobe.
+    start, end : Ends of the lobe, angles from the load line [rad], ``end > start``.
+    preload : 0 (concentric lobe) to below 1.
+    offset : Where along the arc the lobe comes nearest, 0 to 1; 0.5 for a symmetric lobe.
     """
 
     start: Annotated[Angle, Example("-90 deg")]
@@ -168,26 +156,17 @@ def profile_arcs(profile: BearingProfile, preload: float, offset: float | None) 
 class Bearing:
     """A hydrodynamic journal bearing.
 
-    Parameters
-    ----------
-    journal_radius, length, radial_clearance : float
-        [m]. For a multi-lobe bore the clearance is the lobes' own (machined) clearance: lobe radius
-        minus journal radius.
-    grooves : tuple of Groove
-    arcs : tuple of Arc
-        Empty: those of `profile`; without one, one concentric 360 degree bore.
-    bush_outer_radius : float or None
-        [m]; needed for bush conduction only.
-    misalignment : tuple of float
-        Slope of the journal's axis against the bearing's in the x-y and y planes,
+    journal_radius, length, radial_clearance : [m]. For a multi-lobe bore the clearance is the
+        lobes' own (machined) clearance: lobe radius minus journal radius.
+    arcs : Empty: those of `profile`; without one, one concentric 360 degree bore.
+    bush_outer_radius : [m]; needed for bush conduction only.
+    misalignment : Slope of the journal's axis against the bearing's in the x-y and y planes,
         d(e_x)/dy and d(e_y)/dy [rad], y axial from the mid-plane.
-    roughness : float
-        Combined surface roughness [m]; a film thinner than this is reported. 0: not checked.
-    pads : tuple of Pad
-        Tilting pads in place of a bore, in the direction of rotation. The openings between them are
-        the grooves: one before each pad, at ambient pressure unless `grooves` gives them.
-    profile : BearingProfile or None
-        Shorthand for the arcs of a usual bore, with its `preload` and `offset`.
+    roughness : Combined surface roughness [m]; a film thinner than this is reported. 0: not
+        checked.
+    pads : Tilting pads in place of a bore, in the direction of rotation. The openings between them
+        are the grooves: one before each pad, at ambient pressure unless `grooves` gives them.
+    profile : Shorthand for the arcs of a usual bore, with its `preload` and `offset`.
     """
 
     journal_radius: Length

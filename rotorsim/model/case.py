@@ -15,13 +15,7 @@ from .settings import Cavitation, FilmSettings, Inception, ThermalSettings
 class Case:
     """Everything but the speed.
 
-    Parameters
-    ----------
-    bearing : Bearing
-        In the load frame (the scenario's load direction already turned to x).
-    lubricant : Lubricant
-    film : FilmSettings
-    thermal : ThermalSettings
+    bearing : In the load frame (the scenario's load direction already turned to x).
     target : EccentricityTarget or LoadTarget
     """
 

@@ -30,12 +30,8 @@ _Names = TypeVar("_Names", bound=StrEnum)
 class Number:
     """A plain number between bounds.
 
-    Parameters
-    ----------
-    above, least, below, most : float, optional
-        Bounds; `least` and `most` are allowed themselves.
-    hint : str
-        What a message says of the bounds.
+    above, least, below, most : Bounds; `least` and `most` are allowed themselves.
+    hint : What a message says of the bounds.
     """
 
     above: float = -math.inf
@@ -60,14 +56,9 @@ class Number:
 class Quantity:
     """A number with a dimension.
 
-    Parameters
-    ----------
-    kind : str
-        Name in `rotorsim.units.QUANTITIES`.
-    example : str, optional
-        Valid text for messages; by default the kind's own.
-    sign : str
-        ``positive``, ``not_negative`` or ``any``.
+    kind : Name in `rotorsim.units.QUANTITIES`.
+    example : Valid text for messages; by default the kind's own.
+    sign : ``positive``, ``not_negative`` or ``any``.
     """
 
     kind: str
@@ -107,10 +98,7 @@ class Leaf:
     def read(self, value: object) -> Any:
         """Return what `value` means.
 
-        Raises
-        ------
-        InputError
-            With what is allowed.
+        Raises InputError: With what is allowed.
         """
         raise NotImplementedError
 
@@ -133,10 +121,8 @@ class Example:
 class Made:
     """A table that is read as the arguments of a function.
 
-    Parameters
-    ----------
-    by : callable or mapping
-        The function; or one for each ``kind = "..."`` of the table, the first by default.
+    by : callable or mapping. The function; or one for each ``kind = "..."`` of the table, the first
+        by default.
     """
 
     by: Any
@@ -252,10 +238,7 @@ def check(described: Any, section: str = "") -> None:
     Numbers become floats, names the members of their enumerations, lists tuples. What equals its
     default is left as it is.
 
-    Raises
-    ------
-    InputError
-        With the field, after `section` and a point.
+    Raises InputError: With the field, after `section` and a point.
     """
     hints = _hints(type(described))
     for field in dataclasses.fields(described):

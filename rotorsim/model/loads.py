@@ -86,14 +86,9 @@ class BaseMotion:
     The orbit's coordinates stay those of the journal in its bearing; the rotor is loaded with
     minus its mass times the base's acceleration.
 
-    Parameters
-    ----------
-    displacement : tuple of float
-        Amplitudes [m].
-    frequency : float
-        [rad/s]
-    phase : tuple of float
-        [rad]
+    displacement : Amplitudes [m].
+    frequency : [rad/s]
+    phase : [rad]
     """
 
     displacement: Annotated[Pair, Example(["10 um", "0 um"])]

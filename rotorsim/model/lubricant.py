@@ -46,14 +46,9 @@ class ViscosityLaw(Protocol):
 class ExponentialViscosity:
     """mu = mu_0 exp(-beta (T - T_0)) (Dal Eq. 15, corrected: beta is in 1/K).
 
-    Parameters
-    ----------
-    reference_viscosity : float
-        mu_0 [Pa s].
-    reference_temperature : float
-        T_0 [K].
-    temperature_coefficient : float
-        beta [1/K]; 0 for a constant viscosity.
+    reference_viscosity : mu_0 [Pa s].
+    reference_temperature : T_0 [K].
+    temperature_coefficient : beta [1/K]; 0 for a constant viscosity.
 
     Examples
     --------
@@ -88,12 +83,8 @@ class ExponentialViscosity:
 class WaltherViscosity:
     """log10 log10(nu + 0.7) = A - B log10 T, nu in mm2/s, T in K (ASTM D341).
 
-    Parameters
-    ----------
-    intercept, slope : float
-        A and B of the law.
-    density : float
-        [kg/m3]; dynamic viscosity is nu times this (constant) density.
+    intercept, slope : A and B of the law.
+    density : [kg/m3]; dynamic viscosity is nu times this (constant) density.
     """
 
     intercept: float
@@ -196,17 +187,11 @@ def _kinematic_at_100(nu40: float, viscosity_index: float) -> float:
 class Lubricant:
     """An oil.
 
-    Parameters
-    ----------
-    law : ViscosityLaw
-    density : float
-        [kg/m3]
-    specific_heat : float
-        [J/(kg K)]
-    thermal_conductivity : float
-        [W/(m K)]
-    temperature_range : tuple of float
-        Temperatures [K] between which the oil's law is trusted; outside a warning is given.
+    density : [kg/m3]
+    specific_heat : [J/(kg K)]
+    thermal_conductivity : [W/(m K)]
+    temperature_range : Temperatures [K] between which the oil's law is trusted; outside a warning
+        is given.
     """
 
     law: ViscosityLaw
@@ -278,22 +263,13 @@ def oil(
 ) -> Lubricant:
     """Make an oil from exactly one description of its viscosity.
 
-    Parameters
-    ----------
-    viscosity : Viscosity, optional
-        With `reference_temperature` [K] and `viscosity_temperature_coefficient` [1/K] where it is
-        not constant.
-    iso_vg : float, optional
-        ISO grade, with `viscosity_index` (100).
-    viscosity_points : pair of (temperature [K], Viscosity), optional
-        Two points of the Walther law.
-    density, specific_heat, thermal_conductivity : float, optional
-        Typical ones (`_TYPICAL`) by default, where the viscosity needs no density.
-
-    Raises
-    ------
-    InputError
-        No description or two, or one that lacks something.
+    viscosity : With `reference_temperature` [K] and `viscosity_temperature_coefficient` [1/K] where
+        it is not constant.
+    iso_vg : ISO grade, with `viscosity_index` (100).
+    viscosity_points : pair of (temperature [K], Viscosity). Two points of the Walther law.
+    density, specific_heat, thermal_conductivity : Typical ones (`_TYPICAL`) by default, where the
+        viscosity needs no density.
+    Raises InputError: No description or two, or one that lacks something.
     """
     described = {"viscosity": viscosity, "iso_vg": iso_vg, "viscosity_points": viscosity_points}
     given = [name for name, value in described.items() if value is not None]

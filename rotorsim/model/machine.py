@@ -23,12 +23,8 @@ Matrix = tuple[tuple[float, float], tuple[float, float]]
 class MatrixEntry(Leaf):
     """A 2 x 2 matrix: one value for x and y, a pair, or two rows of two.
 
-    Parameters
-    ----------
-    quantity : str
-        Of its entries, a name in `rotorsim.units.QUANTITIES`.
-    text : str
-        A valid one.
+    quantity : Of its entries, a name in `rotorsim.units.QUANTITIES`.
+    text : A valid one.
     """
 
     quantity: str
@@ -64,10 +60,8 @@ _MassMatrix = Annotated[Matrix, MatrixEntry("mass", "5 kg")]
 class Pedestal:
     """What a bearing's housing stands on.
 
-    Parameters
-    ----------
-    mass, stiffness, damping : (2, 2) tuples
-        Of the housing, and between it and the ground [kg, N/m, N s/m].
+    mass, stiffness, damping : (2, 2) tuples. Of the housing, and between it and the ground [kg,
+        N/m, N s/m].
     """
 
     mass: _MassMatrix
@@ -79,22 +73,13 @@ class Pedestal:
 class SupportEntry:
     """A bearing at a place of the shaft.
 
-    Parameters
-    ----------
-    at : float
-        [m]
-    name : str
-    bearing : str or None
-        File of a bearing's scenario, relative to the machine's file.
-    coefficients : str or None
-        File of a coefficient table, in the frame of its static load.
-    stiffness, damping, mass : (2, 2) tuples or None
-        Constants, in the machine's frame turned by `angle`.
-    elevation : float
-        Of the housing, upwards [m].
-    angle : float
-        By which the bearing is turned in its housing [rad].
-    pedestal : Pedestal or None
+    at : [m]
+    bearing : File of a bearing's scenario, relative to the machine's file.
+    coefficients : File of a coefficient table, in the frame of its static load.
+    stiffness, damping, mass : (2, 2) tuples or None. Constants, in the machine's frame turned by
+        `angle`.
+    elevation : Of the housing, upwards [m].
+    angle : By which the bearing is turned in its housing [rad].
     """
 
     at: Annotated[Place, Example("140 mm")]
@@ -133,10 +118,8 @@ def _constants_alone(entry: Any, given: str) -> None:
 class SealEntry:
     """A seal or an impeller: acts on the motion, and carries no static load.
 
-    Parameters
-    ----------
-    at, name, coefficients, stiffness, damping, mass
-        As for `SupportEntry`; a table is taken in the machine's frame.
+    at, name, coefficients, stiffness, damping, mass : As for `SupportEntry`; a table is taken in
+        the machine's frame.
     """
 
     at: Annotated[Place, Example("700 mm")]
@@ -160,17 +143,11 @@ class SealEntry:
 class UnbalanceEntry:
     """An unbalance at a place of the shaft.
 
-    Parameters
-    ----------
-    at : float
-        [m]
-    amount : float or None
-        Mass times radius [kg m].
-    grade : str or None
-        In place of `amount`: balance quality grade of the whole rotor at the highest speed, for
+    at : [m]
+    amount : Mass times radius [kg m].
+    grade : In place of `amount`: balance quality grade of the whole rotor at the highest speed, for
         example ``G2.5`` (ISO 21940-11), shared equally by the planes that name it.
-    phase : float
-        Ahead of x at t = 0 [rad].
+    phase : Ahead of x at t = 0 [rad].
     """
 
     at: Annotated[Place, Example("620 mm")]
@@ -204,13 +181,8 @@ class UnbalanceEntry:
 class Probe:
     """A displacement probe.
 
-    Parameters
-    ----------
-    at : float
-        [m]
-    name : str
-    angle : float
-        From x (down) in the direction of rotation [rad].
+    at : [m]
+    angle : From x (down) in the direction of rotation [rad].
     """
 
     at: Annotated[Place, Example("90 mm")]
@@ -248,13 +220,8 @@ class ForceEntry(Leaf):
 class StaticForce:
     """A static force on the shaft, of a gear mesh for example.
 
-    Parameters
-    ----------
-    at : float
-        [m]
-    force : tuple of (speed, fx, fy)
-        [rad/s, N, N]; linear between the speeds, constant beyond them.
-    name : str
+    at : [m]
+    force : tuple of (speed, fx, fy) [rad/s, N, N]; linear between the speeds, constant beyond them.
     """
 
     at: Annotated[Place, Example("400 mm")]
@@ -268,13 +235,8 @@ class StaticForce:
 class Clearance:
     """A close clearance that the response is checked against.
 
-    Parameters
-    ----------
-    at : float
-        [m]
-    diametral : float
-        [m]
-    name : str
+    at : [m]
+    diametral : [m]
     """
 
     at: Annotated[Place, Example("650 mm")]
@@ -286,16 +248,10 @@ class Clearance:
 class MachineOperating:
     """Speeds of a machine.
 
-    Parameters
-    ----------
-    speed : tuple of float or SpeedRange
-        Ascending [rad/s]; a range becomes its values.
-    continuous : (float, float) or None
-        The range of speeds that margins are judged for [rad/s].
-    trip : float or None
-        [rad/s]
-    vertical : bool
-        A vertical shaft has no static load from its weight.
+    speed : tuple of float or SpeedRange. Ascending [rad/s]; a range becomes its values.
+    continuous : (float, float) or None. The range of speeds that margins are judged for [rad/s].
+    trip : [rad/s]
+    vertical : A vertical shaft has no static load from its weight.
     """
 
     speed: tuple[Speed, ...] | SpeedRange
@@ -318,12 +274,8 @@ class MachineOperating:
 class Destabilising:
     """A destabilising cross stiffness k_xy = -k_yx = Q that is anticipated at a place.
 
-    Parameters
-    ----------
-    at : float
-        [m]
-    anticipated : float
-        [N/m]
+    at : [m]
+    anticipated : [N/m]
     """
 
     at: Annotated[Place, Example("700 mm")]
@@ -336,12 +288,7 @@ class LateralSettings:
 
     Every number of it is an input; the edition is printed with the results.
 
-    Parameters
-    ----------
-    edition : str
-    unbalance_factor : float
-        Times the residual unbalance; editions differ.
-    destabilising_stiffness : tuple of Destabilising
+    unbalance_factor : Times the residual unbalance; editions differ.
     """
 
     edition: str = "not stated"
@@ -352,10 +299,7 @@ class LateralSettings:
 def distinct_names(entries: Sequence[Any], word: str) -> tuple[str, ...]:
     """Names of entries, those without one numbered: ``support 2``.
 
-    Raises
-    ------
-    InputError
-        Two have the same name.
+    Raises InputError: Two have the same name.
     """
     names = tuple(entry.name or f"{word} {i}" for i, entry in enumerate(entries, start=1))
     for i, name in enumerate(names):

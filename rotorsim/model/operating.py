@@ -110,14 +110,10 @@ def ascending(given: tuple[float, ...] | _Range, key: str) -> tuple[float, ...]:
 class Operating:
     """Speeds and load of a scenario.
 
-    Parameters
-    ----------
-    speed : tuple of float or SpeedRange
-        Ascending [rad/s]; a range becomes its values.
-    eccentricity_ratio, load : float or None
-        One of them; the load in N. 0: no static load, or the journal in the centre.
-    load_direction : float
-        Angle of the load in the frame in which the bearing is given [rad].
+    speed : tuple of float or SpeedRange. Ascending [rad/s]; a range becomes its values.
+    eccentricity_ratio, load : One of them; the load in N. 0: no static load, or the journal in the
+        centre.
+    load_direction : Angle of the load in the frame in which the bearing is given [rad].
     """
 
     speed: tuple[Speed, ...] | SpeedRange
@@ -157,10 +153,7 @@ class Operating:
 class StabilitySettings:
     """The stability map's own axis.
 
-    Parameters
-    ----------
-    mass : tuple of float or MassRange
-        Rotor masses per bearing, ascending [kg].
+    mass : tuple of float or MassRange. Rotor masses per bearing, ascending [kg].
     """
 
     mass: Annotated[tuple[Mass, ...] | MassRange, Example("1200 kg")]

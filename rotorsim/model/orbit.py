@@ -63,14 +63,9 @@ _KEYS = {
 class SpeedRamp:
     """Run-up or coast-down: speed [rad/s] changing linearly from start to stop.
 
-    Parameters
-    ----------
-    start, stop : float
-        [rad/s]
-    duration : float
-        [s]
-    hold : float
-        At the last speed after that [s].
+    start, stop : [rad/s]
+    duration : [s]
+    hold : At the last speed after that [s].
     """
 
     start: Annotated[Speed, Example("3000 rpm")]
@@ -91,23 +86,14 @@ class SpeedRamp:
 class ActuatorSettings:
     """A magnetic actuator at the journal, about the equilibrium of the film alone.
 
-    Parameters
-    ----------
-    design : Design
-    force_limit : float
-        Saturation of each axis [N].
-    displacement_scale : float or None
-        LQR: a displacement as bad as `force_scale` [m]; None: a hundredth of the clearance.
-    force_scale : float or None
-        LQR [N]; None: the limit, without one a tenth of the load.
-    stiffness : float
-        PD: proportional gain [N/m].
-    damping : float or None
-        PD: derivative gain [N s/m]; None: the least that reaches `decay_ratio`.
-    decay_ratio : float or None
-        PD: minus the largest growth rate, over the shaft's speed; None: a fiftieth.
-    on : bool
-        Whether it acts.
+    force_limit : Saturation of each axis [N].
+    displacement_scale : LQR: a displacement as bad as `force_scale` [m]; None: a hundredth of the
+        clearance.
+    force_scale : LQR [N]; None: the limit, without one a tenth of the load.
+    stiffness : PD: proportional gain [N/m].
+    damping : PD: derivative gain [N s/m]; None: the least that reaches `decay_ratio`.
+    decay_ratio : PD: minus the largest growth rate, over the shaft's speed; None: a fiftieth.
+    on : Whether it acts.
     """
 
     design: Design = Design.LQR
@@ -139,30 +125,19 @@ class ActuatorSettings:
 class OrbitSettings:
     """What to simulate in the time domain.
 
-    Parameters
-    ----------
-    speed : float or SpeedRamp
-        [rad/s]
-    radial_clearance : float
-        The one of the scenario's clearances that the orbit runs in [m]; by default the first.
-    revolutions : int or None
-        How long, at constant speed (60 by default); None with a ramp, which has its own duration.
-    force : OrbitForce
-    initial_displacement : tuple of float
-        From the static equilibrium, load frame [m].
-    initial_velocity : tuple of float
-        [m/s]
-    kind : OrbitKind
-        By default what the other settings make up.
-    static_load, unbalance : bool
-        Whether they act; by default the unbalance does unless the kind is ``free_decay``.
-    step, harmonic, base_motion, base_shock
-        Loads, or None.
-    samples_per_revolution : int
-    steady_only : bool
-        Figures leave the transient out.
-    actuator : ActuatorSettings or None
-        None: there is none, or it is switched off.
+    speed : float or SpeedRamp [rad/s]
+    radial_clearance : The one of the scenario's clearances that the orbit runs in [m]; by default
+        the first.
+    revolutions : How long, at constant speed (60 by default); None with a ramp, which has its own
+        duration.
+    initial_displacement : From the static equilibrium, load frame [m].
+    initial_velocity : [m/s]
+    kind : By default what the other settings make up.
+    static_load, unbalance : Whether they act; by default the unbalance does unless the kind is
+        ``free_decay``.
+    step, harmonic, base_motion, base_shock : Loads, or None.
+    steady_only : Figures leave the transient out.
+    actuator : None: there is none, or it is switched off.
     """
 
     speed: Annotated[Speed, Example("15000 rpm")] | SpeedRamp
@@ -209,10 +184,7 @@ class OrbitSettings:
     def kinds(self, unbalance: float) -> list[OrbitKind]:
         """Return every kind that the settings make up, the most telling first.
 
-        Parameters
-        ----------
-        unbalance : float
-            The rotor's [kg m].
+        unbalance : The rotor's [kg m].
         """
         found = []
         if isinstance(self.speed, SpeedRamp) and self.speed.stop != self.speed.start:

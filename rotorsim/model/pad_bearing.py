@@ -65,15 +65,9 @@ and one half is no more than a middle: measured bearings should be given theirs.
 class PadEntry:
     """What a file says of one pad; None: as the others.
 
-    Parameters
-    ----------
-    pivot_angle : float or None
-        [rad]
-    arc, thickness, offset, preload, assembled_clearance, pivot, density, mass, tilt_inertia,
-    pitch_inertia
-        See `Pad`.
-    radial_clearance : float or None
-        The pad's own machined clearance [m].
+    pivot_angle : [rad]
+    pitch_inertia : See `Pad`.
+    radial_clearance : The pad's own machined clearance [m].
     """
 
     pivot_angle: Angle | None = None
@@ -97,17 +91,10 @@ class PadEntry:
 class PadSet(PadEntry):
     """What all pads of a bearing share, and how many there are.
 
-    Parameters
-    ----------
-    count : int or None
-    load : PadLoad or None
-        Where the load points: then the first pivot stands half a pitch ahead of it, or in its line.
-        In place of it, `pivot_angle` of the first pad.
-    feed : Feed
-    supply_pressure : float
-        In the openings between the pads, gauge [Pa].
-    supply_temperature : float or None
-        Of the oil supplied [K].
+    load : Where the load points: then the first pivot stands half a pitch ahead of it, or in its
+        line. In place of it, `pivot_angle` of the first pad.
+    supply_pressure : In the openings between the pads, gauge [Pa].
+    supply_temperature : Of the oil supplied [K].
     """
 
     count: Annotated[int, Number(least=1, most=64)] | None = None
@@ -130,10 +117,7 @@ def tilting_pad_bearing(
 
     Angles count from the load where ``pads.load`` is given or neither it nor a pivot's angle.
 
-    Raises
-    ------
-    InputError
-        Something is missing, given twice, or does not fit.
+    Raises InputError: Something is missing, given twice, or does not fit.
     """
     built = tuple(_pad(place, entry, pads) for place, entry in enumerate(_listed(pads, pad)))
     try:

@@ -33,33 +33,19 @@ Inertia = Annotated[float, Quantity("moment of inertia", "0.002 kg*m^2", "not_ne
 class Pad:
     """A pad on its pivot, angles in the load frame.
 
-    Parameters
-    ----------
-    pivot_angle : float
-        [rad]
-    arc : float
-        From the leading to the trailing edge [rad].
-    thickness : float
-        From the pad's face to the pivot [m].
-    offset : float
-        Where the pivot stands: 0 at the leading, 1 at the trailing edge, 0.5 centred.
-    preload : float
-        1 - (assembled clearance)/(machined clearance).
-    clearance : float or None
-        Machined clearance, pad radius minus journal radius [m]; None: the bearing's
+    pivot_angle : [rad]
+    arc : From the leading to the trailing edge [rad].
+    thickness : From the pad's face to the pivot [m].
+    offset : Where the pivot stands: 0 at the leading, 1 at the trailing edge, 0.5 centred.
+    preload : 1 - (assembled clearance)/(machined clearance).
+    clearance : Machined clearance, pad radius minus journal radius [m]; None: the bearing's
         `radial_clearance`.
-    assembled_clearance : float or None
-        In place of the preload [m].
-    pivot : Pivot
-    density : float
-        Of the pad [kg/m3], for what follows where it is not given.
-    mass : float or None
-        [kg]
-    tilt_inertia, pitch_inertia : float or None
-        About the pivot's axis, and about the tangent at the pivot [kg m2].
+    assembled_clearance : In place of the preload [m].
+    density : Of the pad [kg/m3], for what follows where it is not given.
+    mass : [kg]
+    tilt_inertia, pitch_inertia : About the pivot's axis, and about the tangent at the pivot [kg
+        m2].
 
-    Notes
-    -----
     Mass and inertias that are not given are those of the annular sector between the journal's
     radius and that plus the thickness, over the bearing's length.
     """
@@ -102,16 +88,10 @@ class Pad:
 class PadInertia:
     """Mass and inertias of a pad on its pivot.
 
-    Attributes
-    ----------
-    mass : float
-        [kg]
-    tilt : float
-        About the pivot's axis [kg m2].
-    pitch : float
-        About the tangent at the pivot [kg m2].
-    coupling : float
-        Mass times the distance by which the centre of mass lies ahead of the pivot [kg m]: a
+    mass : [kg]
+    tilt : About the pivot's axis [kg m2].
+    pitch : About the tangent at the pivot [kg m2].
+    coupling : Mass times the distance by which the centre of mass lies ahead of the pivot [kg m]: a
         radial acceleration of the pivot turns the pad.
     """
 

@@ -95,12 +95,8 @@ class SpringPivot(Pivot):
 class _ContactPivot(Pivot):
     """A pivot whose contact follows Hertz; both bodies of one material unless told otherwise.
 
-    Parameters
-    ----------
-    youngs_modulus, poisson_ratio : float
-        Of pad and housing [Pa], [-].
-    housing_youngs_modulus, housing_poisson_ratio : float or None
-        Of the housing alone.
+    youngs_modulus, poisson_ratio : Of pad and housing [Pa], [-].
+    housing_youngs_modulus, housing_poisson_ratio : Of the housing alone.
     """
 
     youngs_modulus: Modulus = YOUNGS_MODULUS
@@ -192,15 +188,9 @@ class SocketPivot(_PointPivot):
 class LinePivot(_ContactPivot):
     """A pad rocking on its back: line contact of two cylinders, the housing's hollow.
 
-    Parameters
-    ----------
-    pad_radius, housing_radius : float
-        Of the pad's back and of the housing's bore [m].
-    length : float
-        Of the contact [m].
+    pad_radius, housing_radius : Of the pad's back and of the housing's bore [m].
+    length : Of the contact [m].
 
-    Notes
-    -----
     Kirk & Reedy (1988), from Young's tables: with p = F/L, C the compliance and the contact's full
     width b^2 = 8/pi p C D_h D_p/(D_h - D_p),
 

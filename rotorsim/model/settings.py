@@ -140,13 +140,8 @@ class MeshSize:
 class FilmSettings:
     """Film model and mesh.
 
-    Parameters
-    ----------
-    cavitation, inception, mesh, ruptured_friction, viscosity_response
-    frequency_ratios : tuple of float
-        Whirl over shaft frequencies, ascending, at which K and C are given besides.
-    rotations : bool
-        Give K and C over the journal's rotations as well.
+    frequency_ratios : Whirl over shaft frequencies, ascending, at which K and C are given besides.
+    rotations : Give K and C over the journal's rotations as well.
     """
 
     cavitation: Cavitation = Cavitation.REYNOLDS
@@ -174,24 +169,14 @@ class FilmSettings:
 class ThermalSettings:
     """Thermal model and its boundary conditions.
 
-    Parameters
-    ----------
-    model : ThermalModel
-    ambient_temperature : float
-        [K]; of the surroundings, and of walls that are ``ambient``.
-    supply_temperature : float
-        [K]; of the oil supplied, and of an isothermal film.
-    inlet, shaft, bush
-        A number in place of a `ShaftModel` is the shaft's temperature [K].
-    shaft_temperature : float or None
-        [K]; with ``shaft = given``.
-    bush_conductivity : float
-        [W/(m K)], with ``bush = conduction``.
-    bush_heat_transfer : float
-        Convection to the surroundings outside and at both ends [W/(m2 K)].
-    hot_oil_carry_over : float
-        With ``inlet = mixing``: part of the oil arriving at a groove that enters the next film, 0
-        to 1; fresh oil replaces the rest.
+    ambient_temperature : [K]; of the surroundings, and of walls that are ``ambient``.
+    supply_temperature : [K]; of the oil supplied, and of an isothermal film.
+    inlet, shaft, bush : A number in place of a `ShaftModel` is the shaft's temperature [K].
+    shaft_temperature : [K]; with ``shaft = given``.
+    bush_conductivity : [W/(m K)], with ``bush = conduction``.
+    bush_heat_transfer : Convection to the surroundings outside and at both ends [W/(m2 K)].
+    hot_oil_carry_over : With ``inlet = mixing``: part of the oil arriving at a groove that enters
+        the next film, 0 to 1; fresh oil replaces the rest.
     """
 
     model: Annotated[ThermalModel, Key("models"), SEVERAL] = ThermalModel.THD

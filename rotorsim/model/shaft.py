@@ -24,16 +24,10 @@ Inertia = Annotated[float, Quantity("moment of inertia", "0.55 kg*m^2", "not_neg
 class Material:
     """Elastic material of a shaft; the default is steel.
 
-    Parameters
-    ----------
-    youngs_modulus : float
-        [Pa]
-    density : float
-        [kg/m^3]
-    poisson_ratio : float
-        Ignored where `shear_modulus` is given, but for the shear coefficient.
-    shear_modulus : float or None
-        [Pa]; None: from Young's modulus and Poisson's ratio.
+    youngs_modulus : [Pa]
+    density : [kg/m^3]
+    poisson_ratio : Ignored where `shear_modulus` is given, but for the shear coefficient.
+    shear_modulus : [Pa]; None: from Young's modulus and Poisson's ratio.
     """
 
     youngs_modulus: Modulus = 207e9
@@ -74,24 +68,15 @@ STEEL = Material()
 class Section:
     """A piece of shaft, a cylinder or a cone, solid or hollow.
 
-    Parameters
-    ----------
-    length, outer_diameter : float
-        [m]
-    inner_diameter : float
-        [m]
-    outer_diameter_right, inner_diameter_right : float or None
-        At the right end of a linear taper [m]; None: as at the left end.
-    material : Material or None
-        None: the rotor's.
-    elements : int or None
-        Number of elements of equal length; None: by the mesh rule.
-    at : float or None
-        Left end, from the left end of the shaft [m]; None: where the section before ends.
-    layer : int
-        Sections of layers above 1 lie over (or in) those of layer 1, and need `at`.
-    stiffness : bool
-        With False the section has mass only (a sleeve that is not shrunk on).
+    length, outer_diameter : [m]
+    inner_diameter : [m]
+    outer_diameter_right, inner_diameter_right : At the right end of a linear taper [m]; None: as at
+        the left end.
+    material : None: the rotor's.
+    elements : Number of elements of equal length; None: by the mesh rule.
+    at : Left end, from the left end of the shaft [m]; None: where the section before ends.
+    layer : Sections of layers above 1 lie over (or in) those of layer 1, and need `at`.
+    stiffness : With False the section has mass only (a sleeve that is not shrunk on).
     """
 
     length: Length
@@ -139,15 +124,10 @@ class Section:
 class Disc:
     """A rigid disc, or an added mass, at one place of the shaft.
 
-    Parameters
-    ----------
-    at : float
-        From the left end of the shaft [m].
-    mass : float
-        [kg]
-    polar_inertia, transverse_inertia : float
-        About the disc's centre [kg m^2]; both zero for an added mass.
-    name : str
+    at : From the left end of the shaft [m].
+    mass : [kg]
+    polar_inertia, transverse_inertia : About the disc's centre [kg m^2]; both zero for an added
+        mass.
     """
 
     at: float

@@ -33,14 +33,9 @@ class Distribution(StrEnum):
 class Spread:
     """Tolerance of one input.
 
-    Parameters
-    ----------
-    value : float
-        SI, or a share of the nominal value.
-    relative : bool
-        Which of the two.
-    distribution : Distribution or None
-        None: the section's.
+    value : SI, or a share of the nominal value.
+    relative : Which of the two.
+    distribution : None: the section's.
     """
 
     value: float
@@ -66,10 +61,7 @@ def parse_spread(text: object, name: str) -> Spread:
 
     A table ``{ spread = "5 um", distribution = "normal" }`` is read as well.
 
-    Raises
-    ------
-    InputError
-        What is allowed.
+    Raises InputError: What is allowed.
     """
     if isinstance(text, dict):
         return _from_table(text, name)
@@ -121,16 +113,10 @@ class _SpreadEntry(Leaf):
 class ToleranceSettings:
     """The scenario's ``[tolerances]``: one input or more.
 
-    Parameters
-    ----------
-    radial_clearance, viscosity, load, supply_temperature : Spread or None
-        About the nominal values.
-    distribution : Distribution
-        Of every input that does not say otherwise.
-    samples : int
-        Sets of inputs that are drawn.
-    seed : int
-        The same seed draws the same samples.
+    radial_clearance, viscosity, load, supply_temperature : About the nominal values.
+    distribution : Of every input that does not say otherwise.
+    samples : Sets of inputs that are drawn.
+    seed : The same seed draws the same samples.
     """
 
     radial_clearance: Annotated[Spread | None, _SpreadEntry("radial_clearance")] = None

@@ -24,19 +24,10 @@ def design_feedback(
 ) -> StateFeedback:
     """Feedback for a rigid rotor [kg] on its linearised film, at the coefficients' speed.
 
-    Parameters
-    ----------
-    settings : ActuatorSettings
-    linear : Coefficients
-    mass, radial_clearance : float
-        Per bearing [kg], [m].
-    load : float or None
-        The static one [N]: a tenth of it is the force that counts as large where none is given.
-
-    Raises
-    ------
-    InputError
-        The design reaches its aim with no gain, or nothing says which force is large.
+    mass, radial_clearance : Per bearing [kg], [m].
+    load : The static one [N]: a tenth of it is the force that counts as large where none is given.
+    Raises InputError: The design reaches its aim with no gain, or nothing says which force is
+        large.
     """
     from ..machine.control import design_lqr, design_pd, proportional_derivative
     from ..machine.statespace import state_space
@@ -59,10 +50,7 @@ def with_actuator(
 ) -> OrbitProblem:
     """The problem with an actuator beside its film, at constant speed.
 
-    Raises
-    ------
-    InputError
-        The speed changes, or as `design_feedback`.
+    Raises InputError: The speed changes, or as `design_feedback`.
     """
     from ..machine.actuator import ActuatedForce
     from ..orbit import LinearForce

@@ -97,12 +97,8 @@ _CHANGES = {
 def changed(case: Case, values: Mapping[str, float]) -> Case:
     """`case` with some of its inputs replaced.
 
-    Parameters
-    ----------
-    case : Case
-    values : mapping
-        ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K], ``viscosity``
-        (a factor).
+    values : ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K],
+        ``viscosity`` (a factor).
     """
     for name, value in values.items():
         if name not in _CHANGES:
@@ -124,30 +120,15 @@ def tabulate_over(
 ) -> CoefficientTable:
     """Solve the film over clearance, load and supply temperature as well as speed.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    axes : mapping
-        ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K]: ascending
+    axes : ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K]: ascending
         values. What is missing keeps the scenario's.
-    speeds : sequence of float, optional
-        [rad/s]; the scenario's by default.
-    thermal_models : sequence, optional
-        The scenario's by default.
-    mesh : MeshSize, optional
-        In place of the scenario's.
-    executor, workers, progress
-        As for `rotorsim.tabulate`.
-
-    Returns
-    -------
-    CoefficientTable
-        With ``applied_load`` and ``supply_temperature`` as further dimensions where given.
-
-    Raises
-    ------
-    InputError
-        Unknown axis, values that do not ascend, a temperature at which the oil's law means nothing.
+    speeds : [rad/s]; the scenario's by default.
+    thermal_models : The scenario's by default.
+    mesh : In place of the scenario's.
+    executor, workers, progress : As for `rotorsim.tabulate`.
+    Returns: With ``applied_load`` and ``supply_temperature`` as further dimensions where given.
+    Raises InputError: Unknown axis, values that do not ascend, a temperature at which the oil's law
+        means nothing.
     """
     from ..bearing.table import CoefficientTable
     from .sweep import as_table, sweep_points

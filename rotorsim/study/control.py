@@ -31,22 +31,15 @@ Array = NDArray[np.float64]
 class ControlWishes:
     """What the design is to reach.
 
-    Parameters
-    ----------
-    design : Design
-    max_force : float
-        Saturation of each axis [N].
-    displacement_scale : float or None
-        LQR: a displacement as bad as the full force [m]; None: a hundredth of the clearance.
-    growth_rate : float or None
-        PD: largest real part to reach, zero or negative [1/s]; None: minus a fiftieth of the
-        shaft speed.
-    disturbance : float or None
-        Displacement from rest with which the run in time begins [m]; None: a fiftieth of the
+    max_force : Saturation of each axis [N].
+    displacement_scale : LQR: a displacement as bad as the full force [m]; None: a hundredth of the
         clearance.
-    revolutions : int or None
-        Length of that run; 0: none; None: 100 with a film whose force has a compiled form, 20 with
-        one that is solved at every step.
+    growth_rate : PD: largest real part to reach, zero or negative [1/s]; None: minus a fiftieth of
+        the shaft speed.
+    disturbance : Displacement from rest with which the run in time begins [m]; None: a fiftieth of
+        the clearance.
+    revolutions : Length of that run; 0: none; None: 100 with a film whose force has a compiled
+        form, 20 with one that is solved at every step.
     """
 
     design: Design = Design.LQR
@@ -61,26 +54,14 @@ class ControlWishes:
 class ControlStudy:
     """An actuator's feedback and what it does (SI).
 
-    Attributes
-    ----------
-    speed, mass, load, disturbance : float
-    equilibrium : (float, float)
-        [m]
-    passive : WhirlThreshold
-        Of the film alone.
-    passive_eigenvalues, controlled_eigenvalues : (4,) complex arrays
-        [1/s]
-    system : control.StateSpace
-        Rigid rotor on the linearised film.
-    feedback : StateFeedback
-    margins : (LoopMargins, LoopMargins)
-        Of the loops in x and in y.
-    passive_orbit, controlled_orbit : Orbit or None
-        On the nonlinear film, from the disturbance.
-    largest_force : float or None
-        Of one axis of the actuator in that run [N].
-    note : str
-        What the nonlinear film takes for granted.
+    equilibrium : (float, float) [m]
+    passive : Of the film alone.
+    passive_eigenvalues, controlled_eigenvalues : (4,) complex arrays [1/s]
+    system : Rigid rotor on the linearised film.
+    margins : (LoopMargins, LoopMargins). Of the loops in x and in y.
+    passive_orbit, controlled_orbit : On the nonlinear film, from the disturbance.
+    largest_force : Of one axis of the actuator in that run [N].
+    note : What the nonlinear film takes for granted.
     """
 
     speed: float
@@ -122,20 +103,10 @@ def study_control(
 ) -> ControlStudy:
     """Design the feedback at one speed and try it in time on the nonlinear film.
 
-    Parameters
-    ----------
-    case : Case
-        One bearing with one thermal model.
-    speed : float
-        [rad/s]
-    mass : float
-        Rotor mass per bearing [kg].
-    wishes : ControlWishes, optional
-
-    Raises
-    ------
-    InputError
-        The design reaches its aim with no gain, or nothing carries the load.
+    case : One bearing with one thermal model.
+    speed : [rad/s]
+    mass : Rotor mass per bearing [kg].
+    Raises InputError: The design reaches its aim with no gain, or nothing carries the load.
     """
     from ..machine.control import loop_margins
     from ..machine.statespace import state_space

@@ -33,27 +33,15 @@ _LARGEST_MESH = (156, 48, 24)
 class FilmFrame:
     """Pressure and temperature of the film at one speed, or at one moment of a run.
 
-    Attributes
-    ----------
-    thermal_model : str
-    speed : float
-        [rad/s]
-    theta : (n,) array
-        Cell centres, ascending within one turn [rad].
-    y : (m,) array
-        Equidistant cell centres, -L/2 to L/2 [m].
-    pressure : (n, m) array
-        Gauge [Pa].
-    temperature : (n, m) array or None
-        Mean across the film [K]; None where it is uniform.
-    max_temperature : float or None
-        Hottest place of the film, also across it [K].
-    journal_radius, radial_clearance : float
-        [m]
-    centre : (2,) array
-        Journal's centre [m].
-    time : float, optional
-        The moment in the run of this thermal model [s]; None: journal at rest.
+    speed : [rad/s]
+    theta : (n,) array. Cell centres, ascending within one turn [rad].
+    y : (m,) array. Equidistant cell centres, -L/2 to L/2 [m].
+    pressure : (n, m) array. Gauge [Pa].
+    temperature : (n, m) array or None. Mean across the film [K]; None where it is uniform.
+    max_temperature : Hottest place of the film, also across it [K].
+    journal_radius, radial_clearance : [m]
+    centre : (2,) array. Journal's centre [m].
+    time : The moment in the run of this thermal model [s]; None: journal at rest.
     """
 
     thermal_model: str
@@ -77,10 +65,7 @@ class FilmFrame:
 def film_at_rest(point: OperatingPoint, journal_radius: float) -> FilmFrame:
     """Film of an operating point that kept its fields; `journal_radius` in m.
 
-    Raises
-    ------
-    InputError
-        The point was solved without its fields.
+    Raises InputError: The point was solved without its fields.
     """
     if point.fields is None:
         raise InputError("the operating point was solved without its fields", key="fields")

@@ -34,15 +34,8 @@ class Journal:
     that fixes them (the case and the speed), so that a scenario may gain speeds or change its rotor
     and still reuse them. A journal of another program version is started afresh.
 
-    Parameters
-    ----------
-    path : str or Path
-        Made with the first point.
-
-    Raises
-    ------
-    InputError
-        If `path` is a file of another kind.
+    path : str or Path. Made with the first point.
+    Raises InputError: If `path` is a file of another kind.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -150,10 +143,7 @@ def model_digest() -> str:
 def refuse_other_sources(wanted: str) -> None:
     """Refuse to compute for a program of another `model_digest`: its numbers might differ.
 
-    Raises
-    ------
-    InputError
-        It is another one than this.
+    Raises InputError: It is another one than this.
     """
     if wanted != model_digest():
         raise InputError(

@@ -21,16 +21,10 @@ from .machine import MachineResult
 class LateralStudy:
     """Response and checks of a machine.
 
-    Attributes
-    ----------
-    responses : tuple of ProbeResponse
-        To the unbalances of the file.
-    checks : tuple of Check
-        Empty where the file gives no continuous speeds.
-    decrement_curves : tuple of DecrementCurve
-        Over the destabilising stiffness, one for each place.
-    notes : tuple of str
-        What could not be done, and why.
+    responses : To the unbalances of the file.
+    checks : Empty where the file gives no continuous speeds.
+    decrement_curves : Over the destabilising stiffness, one for each place.
+    notes : What could not be done, and why.
     """
 
     responses: tuple[ProbeResponse, ...] = ()
@@ -42,8 +36,6 @@ class LateralStudy:
 def lateral_study(result: MachineResult) -> LateralStudy:
     """Analyse a machine as its file asks for.
 
-    Notes
-    -----
     The checks use the residual unbalance of the edition's formula, placed to excite each critical
     mode; the response at the probes is that to the unbalances of the file.
     """
@@ -115,11 +107,8 @@ def response_document(
 ) -> list[dict[str, Any]]:
     """Response at the probes as plain data (SI).
 
-    Parameters
-    ----------
-    study : LateralStudy
-    continuous : (float, float) or None
-        Range of continuous speeds that the margins of the peaks are measured from [rad/s].
+    continuous : (float, float) or None. Range of continuous speeds that the margins of the peaks
+        are measured from [rad/s].
     """
     return [
         {

@@ -55,13 +55,9 @@ _SUBDIVISIONS = 4
 class SupportState:
     """A support over the speeds.
 
-    Attributes
-    ----------
-    name : str
-    load : (n, 2) array
-        Static load along x and y of the machine [N]; NaN where it was not asked for.
-    points : tuple of OperatingPoint
-        Of a film, one for each speed; empty for others.
+    load : (n, 2) array. Static load along x and y of the machine [N]; NaN where it was not asked
+        for.
+    points : Of a film, one for each speed; empty for others.
     """
 
     name: str
@@ -78,17 +74,9 @@ class SupportState:
 class MachineResult:
     """A machine with one thermal model of its films.
 
-    Attributes
-    ----------
-    description : MachineFile
-    thermal_model : str
-        ``isothermal``, ``thd``, or ``given`` without films.
-    speeds : (n,) array
-        [rad/s]
-    machine : Machine
-    supports : tuple of SupportState
-    statics : tuple of StaticEquilibrium
-        One for each speed; empty where no support needs the static load.
+    thermal_model : ``isothermal``, ``thd``, or ``given`` without films.
+    speeds : (n,) array [rad/s]
+    statics : One for each speed; empty where no support needs the static load.
     """
 
     description: MachineFile
@@ -144,12 +132,8 @@ class MachineResult:
 class HeatedMode:
     """A mode that heating makes unstable at the highest speed.
 
-    Attributes
-    ----------
-    frequency : float
-        Damped, with heating [rad/s].
-    isothermal_growth_rate, growth_rate : float
-        Without and with heating [1/s].
+    frequency : Damped, with heating [rad/s].
+    isothermal_growth_rate, growth_rate : Without and with heating [1/s].
     """
 
     frequency: float

@@ -35,17 +35,10 @@ def _results(machine: MachineFile) -> dict[str, MachineResult]:
 def assembled(machine: MachineFile | Machine, thermal_model: str | None = None) -> Machine:
     """Machine with its films solved over the file's speeds.
 
-    Parameters
-    ----------
-    machine : MachineFile or Machine
-        A `Machine` is returned as it is.
-    thermal_model : str, optional
-        ``isothermal`` or ``thd``; by default the last one that the bearings' files name.
-
-    Raises
-    ------
-    InputError
-        No bearing has that thermal model, or `machine` is neither of the two.
+    machine : MachineFile or Machine. A `Machine` is returned as it is.
+    thermal_model : ``isothermal`` or ``thd``; by default the last one that the bearings' files
+        name.
+    Raises InputError: No bearing has that thermal model, or `machine` is neither of the two.
     """
     if isinstance(machine, Machine):
         return machine

@@ -39,23 +39,11 @@ _FILM_FRAMES = 12
 class Results:
     """Everything the main job computed (SI); what failed is missing and named in `problems`.
 
-    Attributes
-    ----------
-    scenario : Scenario
-    table : CoefficientTable
-    points : tuple of OperatingPoint
-    curves : tuple of StabilityCurve
-    chart : StabilityMap or None
-    orbits : tuple of Orbit
-        Each thermal model at constant speed, then each through the run-up.
-    films : tuple of OperatingPoint
-        With their fields, in the orbit's clearance: for each thermal model, ascending in speed.
-    film_motion : tuple of FilmFrame
-        Along orbits on the nonlinear film, ascending in time.
-    modes : tuple of Campbell
-        Of the scenario's rotor over speed in the orbit's clearance, for each thermal model.
-    problems : tuple of str
-        What went wrong, where, and what to do.
+    orbits : Each thermal model at constant speed, then each through the run-up.
+    films : With their fields, in the orbit's clearance: for each thermal model, ascending in speed.
+    film_motion : Along orbits on the nonlinear film, ascending in time.
+    modes : Of the scenario's rotor over speed in the orbit's clearance, for each thermal model.
+    problems : What went wrong, where, and what to do.
     """
 
     scenario: Scenario

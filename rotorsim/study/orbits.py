@@ -93,13 +93,8 @@ def prepare_film(
 ) -> None:
     """Solve the force map of a nonlinear film unless it is kept: the first run's longest part.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    model : str
-        Thermal model.
-    progress : callable, optional
-        Called with rows done and rows in all, where there is something to do.
+    model : Thermal model.
+    progress : Called with rows done and rows in all, where there is something to do.
     """
     from ..orbit.film_force import prepare_map
 
@@ -264,18 +259,10 @@ def static_position(
 ) -> Callable[[float], tuple[float, float]]:
     """Journal's static position over speed, from a table of one curve with positions.
 
-    Parameters
-    ----------
-    one : CoefficientTable
-        With a converged point.
-    clearance : float
-        Radial [m].
-
-    Returns
-    -------
-    callable
-        speed [rad/s] -> (x, y) [m] in the load frame; a monotone interpolant (PCHIP) through the
-        converged points.
+    one : With a converged point.
+    clearance : Radial [m].
+    Returns: speed [rad/s] -> (x, y) [m] in the load frame; a monotone interpolant (PCHIP) through
+        the converged points.
     """
     from scipy.interpolate import PchipInterpolator
 

@@ -35,17 +35,12 @@ _SPEEDS = 12
 class Plane:
     """Stability over two inputs (SI), the others held.
 
-    Attributes
-    ----------
-    x, y : str
-        Two of `_DIMENSIONS`.
-    held : mapping of str to float
-        The others.
-    dataset : xarray.Dataset
-        Over ``thermal_model``, x and y: ``growth_rate`` (largest real part [1/s]: stable below 0),
-        ``verdict``, ``mass_margin`` and more, see `rotorsim.machine.StabilityMap`.
-    solved_points, failed_points : int
-        Films behind it, and how many of them did not converge.
+    x, y : Two of `_DIMENSIONS`.
+    held : The others.
+    dataset : xarray.Dataset. Over ``thermal_model``, x and y: ``growth_rate`` (largest real part
+        [1/s]: stable below 0), ``verdict``, ``mass_margin`` and more, see
+        `rotorsim.machine.StabilityMap`.
+    solved_points, failed_points : Films behind it, and how many of them did not converge.
     """
 
     x: str
@@ -99,29 +94,15 @@ def plane_of_scenario(
 ) -> Plane:
     """Solve the film where the plane needs it, and map the stability in between.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    x, y : str
-        Two of `_DIMENSIONS`.
-    values : mapping, optional
-        Values along x and y, ascending (SI). For what changes the film these are solved; the map
-        goes from the first to the last. The scenario's, or a span about them, by default.
-    held : mapping, optional
-        Values of the others; the scenario's by default, of the speed its highest.
-    thermal_models : sequence of str, optional
-        The scenario's by default.
-    mesh : MeshSize, optional
-        In place of the scenario's.
-    cells : int
-        Values along each axis of the map; 0: those given, nothing interpolated but the speed.
-    executor, workers, progress
-        As for `rotorsim.tabulate`.
-
-    Raises
-    ------
-    InputError
-        Axes alike or unknown, or something left open.
+    x, y : Two of `_DIMENSIONS`.
+    values : Values along x and y, ascending (SI). For what changes the film these are solved; the
+        map goes from the first to the last. The scenario's, or a span about them, by default.
+    held : Values of the others; the scenario's by default, of the speed its highest.
+    thermal_models : The scenario's by default.
+    mesh : In place of the scenario's.
+    cells : Values along each axis of the map; 0: those given, nothing interpolated but the speed.
+    executor, workers, progress : As for `rotorsim.tabulate`.
+    Raises InputError: Axes alike or unknown, or something left open.
     """
     _check_axes(x, y, held)
     given = {**(values or {}), **{name: [value] for name, value in (held or {}).items()}}
@@ -154,18 +135,11 @@ def plane_of_table(
 ) -> Plane:
     """Map the stability over two inputs that a table holds.
 
-    Parameters
-    ----------
-    table : CoefficientTable
-    x, y : str
-        ``speed``, ``mass`` or a dimension of the table.
-    values : mapping
-        ``speed`` [rad/s] (the tabulated ones by default) and ``mass`` [kg] (along an axis: up to
-        three times the median critical mass at the highest speed by default).
-    held : mapping, optional
-        Where the table's other dimensions are held.
-    cells : int
-        Values along each axis of the map; 0: those given.
+    x, y : ``speed``, ``mass`` or a dimension of the table.
+    values : ``speed`` [rad/s] (the tabulated ones by default) and ``mass`` [kg] (along an axis: up
+        to three times the median critical mass at the highest speed by default).
+    held : Where the table's other dimensions are held.
+    cells : Values along each axis of the map; 0: those given.
     """
     from ..machine.map import stability_map
 

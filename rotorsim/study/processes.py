@@ -58,20 +58,10 @@ def map_on_processes(
 ) -> list[_Result]:
     """Results of `function` on every item, in their order, computed by `workers` processes.
 
-    Parameters
-    ----------
-    function : callable
-        It and what it returns must be picklable.
-    items : iterable
-    workers : int
-        1 computes in this process.
-    done : callable, optional
-        Called with the number of items done.
-
-    Raises
-    ------
-    Exception
-        What `function` raised, and `BrokenExecutor` where a process was lost.
+    function : It and what it returns must be picklable.
+    workers : 1 computes in this process.
+    done : Called with the number of items done.
+    Raises Exception: What `function` raised, and `BrokenExecutor` where a process was lost.
     """
     report = done or (lambda _count: None)
     results: list[_Result] = []

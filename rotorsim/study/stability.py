@@ -38,31 +38,22 @@ Array = NDArray[np.float64]
 class StabilityCurve:
     """A rotor on one bearing with one thermal model, over the tabulated speeds (SI).
 
-    Attributes
-    ----------
-    choices : dict
-        ``thermal_model``, ``radial_clearance`` [m], and any further dimension of the table.
-    speed : (n,) array
-        [rad/s]
-    stability : (n,) array of str
-        Verdict on the critical mass; empty where the point did not converge.
-    critical_mass, critical_mass_dimensionless, whirl_frequency_ratio : (n,) arrays
-        Of a rigid rotor; NaN without a threshold.
-    rotor : str
-        In words; empty without a rotor.
-    mass : float or None
-        Per bearing, of a rigid rotor [kg].
-    eigenvalues : (n, k) complex array or None
-        Of the rotor [1/s], falling real part, those without damping last.
-    undamped : (n, k) bool array or None
-        Whether an eigenvalue's real part is below its own accuracy: neither stable nor unstable.
-    threshold_speeds : tuple of float
-        Speeds at which that rotor turns from stable to unstable or back [rad/s].
-    growth_rate_synchronous : (n,) array or None
-        What the coefficients reduced at the shaft's frequency would make of the growth rate [1/s];
-        None without tilting pads.
-    threshold_speeds_synchronous : tuple of float
-        And of the threshold speeds [rad/s].
+    choices : ``thermal_model``, ``radial_clearance`` [m], and any further dimension of the table.
+    speed : (n,) array [rad/s]
+    stability : (n,) array of str. Verdict on the critical mass; empty where the point did not
+        converge.
+    critical_mass, critical_mass_dimensionless, whirl_frequency_ratio : (n,) arrays. Of a rigid
+        rotor; NaN without a threshold.
+    rotor : In words; empty without a rotor.
+    mass : Per bearing, of a rigid rotor [kg].
+    eigenvalues : (n, k) complex array or None. Of the rotor [1/s], falling real part, those without
+        damping last.
+    undamped : (n, k) bool array or None. Whether an eigenvalue's real part is below its own
+        accuracy: neither stable nor unstable.
+    threshold_speeds : Speeds at which that rotor turns from stable to unstable or back [rad/s].
+    growth_rate_synchronous : (n,) array or None. What the coefficients reduced at the shaft's
+        frequency would make of the growth rate [1/s]; None without tilting pads.
+    threshold_speeds_synchronous : And of the threshold speeds [rad/s].
     """
 
     choices: dict[str, Any]
@@ -96,11 +87,7 @@ def stability_curves(
 ) -> list[StabilityCurve]:
     """Curves of every thermal model and clearance in `table`.
 
-    Parameters
-    ----------
-    table : CoefficientTable
-    rotor : Rotor or float, optional
-        A number is the mass of a rigid rotor per bearing [kg].
+    rotor : Rotor or float. A number is the mass of a rigid rotor per bearing [kg].
     """
     if isinstance(rotor, (int, float)):
         rotor = Rotor.rigid(float(rotor))
@@ -193,16 +180,10 @@ def _eigenvalues(
 class Campbell:
     """Modes of a rotor over speed on one curve of a table (SI).
 
-    Attributes
-    ----------
-    choices : dict
-        ``thermal_model``, ``radial_clearance`` [m], and any further dimension of the table.
-    branches : Modes
-        The oscillating ones of lowest frequency, or all.
-    growth : (n,) array
-        Largest real part of all eigenvalues [1/s], non-oscillating ones included, those without
-        damping left out.
-    thresholds : tuple of ThresholdSpeed
+    choices : ``thermal_model``, ``radial_clearance`` [m], and any further dimension of the table.
+    branches : The oscillating ones of lowest frequency, or all.
+    growth : (n,) array. Largest real part of all eigenvalues [1/s], non-oscillating ones included,
+        those without damping left out.
     """
 
     choices: dict[str, Any]
@@ -236,18 +217,9 @@ class Campbell:
 def campbell_curves(table: CoefficientTable, rotor: Rotor, count: int | None = 8) -> list[Campbell]:
     """Campbell data of `rotor` on every curve of `table`.
 
-    Parameters
-    ----------
-    table : CoefficientTable
-    rotor : Rotor
-    count : int or None
-        Oscillating branches to keep, those of lowest frequency; None: all branches, also those
+    count : Oscillating branches to keep, those of lowest frequency; None: all branches, also those
         that do not oscillate.
-
-    Raises
-    ------
-    InputError
-        A curve has no converged point.
+    Raises InputError: A curve has no converged point.
     """
     values = {name: table.dataset[name].values for name in table.choices}
     curves = []

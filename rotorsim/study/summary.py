@@ -34,11 +34,8 @@ def heating_effect(
 ) -> list[dict[str, Any]]:
     """Isothermal against THD at the highest speed, clearance by clearance.
 
-    Returns
-    -------
-    list of dict
-        ``radial_clearance``, ``speed``, and for each model's name what the film carries and costs
-        there, the critical mass, and of the scenario's rotor its ``verdict`` (``stable``,
+    Returns: ``radial_clearance``, ``speed``, and for each model's name what the film carries and
+        costs there, the critical mass, and of the scenario's rotor its ``verdict`` (``stable``,
         ``unstable`` or None), ``verdict_over_range`` (``stable throughout``, ``unstable
         throughout``, ``changes`` or None) and ``threshold_speeds``; ``threshold_speed`` is the
         first of them.

@@ -45,10 +45,7 @@ def solve_chunk(
 ) -> tuple[OperatingPoint, ...]:
     """Points of one chunk; this is what travels to the workers.
 
-    Raises
-    ------
-    InputError
-        The chunk was made by another program than the one that is installed here.
+    Raises InputError: The chunk was made by another program than the one that is installed here.
     """
     if chunk.model:
         refuse_other_sources(chunk.model)

@@ -48,14 +48,8 @@ _BATCH = 4
 class FilmThreshold:
     """From sampled inputs to thresholds, by solving the film: the function that is propagated.
 
-    Parameters
-    ----------
-    case : Case
-    rotor : Rotor
-    operating_speed : float
-        [rad/s]
-    speeds : tuple of float
-        Between which the threshold is looked for, ascending [rad/s].
+    operating_speed : [rad/s]
+    speeds : Between which the threshold is looked for, ascending [rad/s].
     """
 
     case: Case
@@ -66,25 +60,14 @@ class FilmThreshold:
     def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
         """Thresholds of one sample.
 
-        Parameters
-        ----------
-        sample : mapping
-            ``radial_clearance`` [m], ``viscosity`` (a factor), ``load`` [N],
+        sample : ``radial_clearance`` [m], ``viscosity`` (a factor), ``load`` [N],
             ``supply_temperature`` [K].
-
-        Returns
-        -------
-        dict
-            ``growth_rate`` at the operating speed [1/s], above 0 where unstable; ``critical_mass``
-            of a rigid rotor there [kg] and its ``whirl_frequency_ratio``, None without a threshold;
-            ``threshold_speed`` [rad/s], the lowest at which the rotor loses its stability, None
-            where none lies within the speeds; ``stable_throughout`` and ``unstable_throughout``,
-            1 or 0.
-
-        Raises
-        ------
-        SampleError
-            The film did not converge.
+        Returns: ``growth_rate`` at the operating speed [1/s], above 0 where unstable;
+            ``critical_mass`` of a rigid rotor there [kg] and its ``whirl_frequency_ratio``, None
+            without a threshold; ``threshold_speed`` [rad/s], the lowest at which the rotor loses
+            its stability, None where none lies within the speeds; ``stable_throughout`` and
+            ``unstable_throughout``, 1 or 0.
+        Raises SampleError: The film did not converge.
         """
         case = changed(self.case, {_INPUTS[name]: value for name, value in sample.items()})
         points = self._along(case, sorted({*self.speeds, self.operating_speed}))
@@ -148,27 +131,15 @@ def _interpolator(points: Mapping[float, OperatingPoint]) -> CoefficientInterpol
 class ToleranceStudy:
     """Distribution of thresholds under tolerances (SI).
 
-    Attributes
-    ----------
-    thermal_model : str
-    radial_clearance : float
-        Nominal [m].
-    rotor : Rotor
-    operating_speed : float
-        [rad/s]
-    tolerances : mapping of str to Tolerance
-    nominal : mapping of str to float or None
-        Outputs (see `FilmThreshold`) without any deviation.
-    samples : Propagation
-    probability_of_instability, standard_error : float
-        At the operating speed.
-    importance : mapping of str to float
-        Rank correlation of each input with the growth rate at the operating speed, strongest first.
-    share_of_variance : mapping of str to float
-        First-order Sobol' index for the same output, by regression (see
+    radial_clearance : Nominal [m].
+    operating_speed : [rad/s]
+    nominal : Outputs (see `FilmThreshold`) without any deviation.
+    probability_of_instability, standard_error : At the operating speed.
+    importance : Rank correlation of each input with the growth rate at the operating speed,
+        strongest first.
+    share_of_variance : First-order Sobol' index for the same output, by regression (see
         `rotorsim.machine.Propagation.first_order_index`); they need not add up to 1.
-    explained_variance : float
-        Adjusted R^2 of that regression.
+    explained_variance : Adjusted R^2 of that regression.
     """
 
     thermal_model: str
@@ -205,30 +176,16 @@ def study_tolerances(
 ) -> ToleranceStudy:
     """Sample the tolerances, solve the film for every sample, and say what it means.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    settings : ToleranceSettings, optional
-        The scenario's ``[tolerances]`` by default.
-    rotor : Rotor, optional
-        The scenario's by default.
-    operating_speed : float, optional
-        [rad/s]; by default the orbit's where it is constant, else the highest.
-    radial_clearance, thermal_model : optional
-        Which of the scenario's; by default the only clearance, and ``thd`` where there is a choice.
-    mesh : MeshSize, optional
-        In place of the scenario's.
-    executor : Executor, optional
-        Where to compute; by default processes on this machine.
-    workers : int, optional
-        Number of processes; 1 computes in this one.
-    progress : callable, optional
-        ``progress(done, total)`` in samples.
-
-    Raises
-    ------
-    InputError
-        No tolerances, no rotor, or a spread that reaches below zero.
+    settings : The scenario's ``[tolerances]`` by default.
+    rotor : The scenario's by default.
+    operating_speed : [rad/s]; by default the orbit's where it is constant, else the highest.
+    radial_clearance, thermal_model : Which of the scenario's; by default the only clearance, and
+        ``thd`` where there is a choice.
+    mesh : In place of the scenario's.
+    executor : Where to compute; by default processes on this machine.
+    workers : Number of processes; 1 computes in this one.
+    progress : ``progress(done, total)`` in samples.
+    Raises InputError: No tolerances, no rotor, or a spread that reaches below zero.
     """
     settings = settings or scenario.tolerances
     if settings is None:

@@ -37,19 +37,10 @@ _INSTEAD: dict[tuple[str, ...], tuple[str, ...]] = {
 def changed_text(text: str, root: Any, changes: Mapping[str, object]) -> str:
     """Return TOML text in which some entries are changed.
 
-    Parameters
-    ----------
-    text : str
-        Of a valid scenario.
-    root : callable
-        What the whole text describes.
-    changes : mapping of str to object
-        New values by key; see `Scenario.replace`.
-
-    Raises
-    ------
-    InputError
-        No such key, or nothing that a file could hold.
+    text : Of a valid scenario.
+    root : What the whole text describes.
+    changes : New values by key; see `Scenario.replace`.
+    Raises InputError: No such key, or nothing that a file could hold.
     """
     tables = tomllib.loads(text)
     for name, value in changes.items():

@@ -48,11 +48,7 @@ _RPM = 30.0 / math.pi
 def settled(scenario: Scenario, tables: _Tables) -> Scenario:
     """Return the scenario with what its entries leave open, or refuse what does not go together.
 
-    Parameters
-    ----------
-    scenario : Scenario
-    tables : dict
-        As the file has them: which entries are written.
+    tables : As the file has them: which entries are written.
     """
     scenario = _settled_pads(scenario, tables)
     _check_bearings(scenario)

@@ -19,10 +19,8 @@ _MAX_NESTING = 50
 def read_text(path: str | Path) -> str:
     """Text of a scenario file, lines ended by a line feed: its hash is the same everywhere.
 
-    Raises
-    ------
-    ScenarioError
-        No such file, not a file, a file of another kind, too large, not UTF-8, not readable.
+    Raises ScenarioError: No such file, not a file, a file of another kind, too large, not UTF-8,
+        not readable.
     """
     path = Path(path)
     try:
@@ -73,10 +71,7 @@ def _similar(path: Path) -> str:
 def parse_toml(text: str, source: str) -> dict[str, Any]:
     """Entries of a TOML text.
 
-    Raises
-    ------
-    ScenarioError
-        Not TOML, with the line; or nested beyond sense.
+    Raises ScenarioError: Not TOML, with the line; or nested beyond sense.
     """
     if len(text) > _MAX_BYTES:
         raise ScenarioError(f"is larger than {_MAX_BYTES} characters", source=source)

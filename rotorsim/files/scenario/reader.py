@@ -76,14 +76,9 @@ class _Finding(NamedTuple):
 class Reader:
     """Reads the tables of one file.
 
-    Parameters
-    ----------
-    tables : dict
-        The file's entries.
-    root : callable
-        What the whole file describes.
-    source : str
-        Name of the file, for messages.
+    tables : The file's entries.
+    root : What the whole file describes.
+    source : Name of the file, for messages.
     """
 
     def __init__(self, tables: dict[str, Any], root: Callable[..., Any], source: str) -> None:
@@ -97,10 +92,7 @@ class Reader:
     def arguments(self) -> dict[str, Any]:
         """Return the arguments of `root`.
 
-        Raises
-        ------
-        ScenarioError
-            With all that is wrong, the likeliest cause first.
+        Raises ScenarioError: With all that is wrong, the likeliest cause first.
         """
         found = self._arguments(self.root, self.tables, ())
         if self._found:

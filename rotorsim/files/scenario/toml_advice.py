@@ -14,12 +14,8 @@ _MAX_SHOWN = 60
 def advice(text: str, message: str) -> str:
     """Say how to mend what ``tomllib`` complained of.
 
-    Parameters
-    ----------
-    text : str
-        The whole file.
-    message : str
-        Of the exception, with line and column.
+    text : The whole file.
+    message : Of the exception, with line and column.
 
     Examples
     --------

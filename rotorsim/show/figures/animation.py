@@ -41,18 +41,9 @@ def animate_orbits(
     First the whole run in a few seconds, each picture with the turns since the one before; then
     the last turns in slow motion, so that the whirl itself is seen and not its stroboscopic image.
 
-    Parameters
-    ----------
-    orbits : sequence of Orbit
-    path : str or Path
-        Its suffix decides the format.
-    slow_only : bool
-        Leave the first act out.
-
-    Raises
-    ------
-    InputError
-        Another suffix, or ``.mp4`` without ffmpeg.
+    path : str or Path. Its suffix decides the format.
+    slow_only : Leave the first act out.
+    Raises InputError: Another suffix, or ``.mp4`` without ffmpeg.
     """
     target = Path(path)
     writer = _writer(target)

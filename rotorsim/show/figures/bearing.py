@@ -97,10 +97,7 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
 
     All films share one scale, so that colours may be compared.
 
-    Raises
-    ------
-    InputError
-        A point was solved without its fields.
+    Raises InputError: A point was solved without its fields.
     """
     films = [_fields(point) for point in points]
     heat = [_mean_temperature(film) for film in films]

@@ -270,14 +270,8 @@ def mode_shape(
 ) -> Figure:
     """One mode in space: the orbits of the nodes and the centre line at one instant.
 
-    Parameters
-    ----------
-    rotor : Rotor
-        With positions of its nodes.
-    found : Modes
-    index, branch : int
-        Of the speed and of the mode in `found`.
-    ax : Axes3D, optional
+    rotor : With positions of its nodes.
+    index, branch : Of the speed and of the mode in `found`.
     """
     if ax is None:
         with mpl.rc_context(SETTINGS):
@@ -319,10 +313,7 @@ def bode_at_probes(
 ) -> Figure:
     """Amplitude and phase lag at probes over speed, with the peaks' amplification factors.
 
-    Parameters
-    ----------
-    ax : (Axes, Axes), optional
-        For the amplitude and for the phase.
+    ax : (Axes, Axes). For the amplitude and for the phase.
     """
     upper, lower = new_axes(2, 1, (6.6, 5.4), sharex=True)[1][:, 0] if ax is None else ax
     for number, one in enumerate(responses):
@@ -363,13 +354,9 @@ def critical_speed_chart(
 ) -> Figure:
     """Undamped critical speeds over support stiffness, with the bearings' own stiffness.
 
-    Parameters
-    ----------
-    chart : CriticalSpeedMap
-    principal : mapping of str to (n, 2) array, optional
-        Principal stiffnesses of each support over `speeds` [N/m].
-    speeds : (n,) array, optional
-        [rad/s]
+    principal : mapping of str to (n, 2) array. Principal stiffnesses of each support over `speeds`
+        [N/m].
+    speeds : (n,) array [rad/s]
     """
     ax = axes_or_new(ax, (6.4, 4.8))
     for k in range(chart.speed.shape[1]):

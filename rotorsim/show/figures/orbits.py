@@ -39,14 +39,8 @@ def orbit_plot(
 ) -> Figure:
     """Draw runs side by side, each in the line of contact, and its close-up below.
 
-    Parameters
-    ----------
-    orbits : sequence of Orbit
-    title : str
-    steady_only : bool
-        Leave out what comes before the steady part.
-    names : sequence of str, optional
-        Of the runs, in place of `rotorsim.orbit.description.run_names`.
+    steady_only : Leave out what comes before the steady part.
+    names : Of the runs, in place of `rotorsim.orbit.description.run_names`.
     """
     count, names = len(orbits), run_names(orbits) if names is None else names
     figure, axes = new_axes(2, count, (3.4 * count + 0.6, 7.0), title)
@@ -149,13 +143,9 @@ def bode_plot(
 ) -> Figure:
     """Magnitude and phase against frequency.
 
-    Parameters
-    ----------
-    frequency : (n,) array
-        [rad/s]
+    frequency : (n,) array [rad/s]
     responses : sequence of (name, (n,) complex array)
-    quantity : str
-        What the magnitude is, with its unit.
+    quantity : What the magnitude is, with its unit.
     """
     figure, axes = new_axes(2, 1, (6.2, 5.0), title, sharex=True)
     for number, (name, response) in enumerate(responses):

@@ -171,12 +171,8 @@ def _mark_whirl(ax: Axes, curve: Campbell) -> None:
 def root_locus(branches: Modes, quantity: str, title: str = "", ax: Axes | None = None) -> Figure:
     """Eigenvalues over a parameter: open at its first value, filled at its last, numbers between.
 
-    Parameters
-    ----------
-    branches : Modes
-        Over a parameter in the unit that `quantity` names.
-    quantity : str
-        The parameter with its unit, for example ``"mass per bearing [kg]"``.
+    branches : Over a parameter in the unit that `quantity` names.
+    quantity : The parameter with its unit, for example ``"mass per bearing [kg]"``.
     """
     parameter, eigenvalues = branches.parameter, branches.eigenvalues
     ax = axes_or_new(ax, (6.2, 4.8))

@@ -107,18 +107,8 @@ def save_figure(
 ) -> list[Path]:
     """Write a figure as STEM.png and STEM.svg, each whole or not at all.
 
-    Parameters
-    ----------
-    figure : Figure
-    stem : str or Path
-        File name without suffix; missing folders are made.
-    formats : sequence of str
-    dpi : int
-        Of pixel formats.
-
-    Returns
-    -------
-    list of Path
+    stem : str or Path. File name without suffix; missing folders are made.
+    dpi : Of pixel formats.
     """
     written = []
     for suffix in formats:
