@@ -9,11 +9,9 @@ import typer
 from .. import __version__
 from .control_command import control
 from .file_commands import export, new, view
-from .film_commands import check, solve, table
+from .film_commands import check, report, run, solve, table
 from .orbit_command import orbit
 from .output import WRONG_INPUT, Output, guarded
-from .report_command import report
-from .run_command import run
 from .stability_command import stability
 
 app: typer.Typer = typer.Typer(

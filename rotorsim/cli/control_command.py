@@ -8,10 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import InputError
-from .inputs import wanted_clearance, wanted_mass
-from .options import ClearanceOption, ModelOption, ScenarioArgument, SpeedOption
+from .options import (
+    ClearanceOption,
+    FolderOption,
+    MassOption,
+    ModelOption,
+    ScenarioArgument,
+    SpeedOption,
+    option,
+    positive,
+    wanted_clearance,
+)
 from .output import DONE, INCOMPLETE, Output
-from .stability_options import FolderOption, MassOption
 
 if TYPE_CHECKING:
     from ..files.scenario import Scenario
@@ -38,24 +46,17 @@ def control(
     ] = _DesignChoice.LQR,
     max_force: Annotated[
         str | None,
-        typer.Option(
-            "--max-force", metavar="FORCE", help='Where each axis saturates, e.g. "2 kN".',
-            show_default="never",
-        ),
+        option("--max-force", "FORCE", 'Where each axis saturates, e.g. "2 kN".', "never"),
     ] = None,
     disturbance: Annotated[
         str | None,
-        typer.Option(
-            "--disturbance", metavar="LENGTH", help="From rest, at the start of the run in time.",
-            show_default="a fiftieth of the clearance",
-        ),
+        option("--disturbance", "LENGTH", "From rest, at the start of the run in time.",
+               "a fiftieth of the clearance"),
     ] = None,
     revolutions: Annotated[
         int | None,
-        typer.Option(
-            "--revolutions", metavar="N", help="Of that run; 0: none.", min=0, max=100_000,
-            show_default="20 where the film is solved at every step, else 100",
-        ),
+        option("--revolutions", "N", "Of that run; 0: none.",
+               "20 where the film is solved at every step, else 100", min=0, max=100_000),
     ] = None,
     folder: FolderOption = None,
 ) -> int:  # fmt: skip
@@ -69,14 +70,14 @@ def control(
     from ..study.control import ControlWishes, Design, study_control
 
     loaded = load_scenario(scenario)
-    force = _quantity(max_force, "force", "--max-force", "2 kN")
+    force = positive(max_force, "force", "--max-force", "2 kN")
     wishes = ControlWishes(
         design=Design(design.value),
-        disturbance=_quantity(disturbance, "length", "--disturbance", "2 um"),
+        disturbance=positive(disturbance, "length", "--disturbance", "2 um"),
         revolutions=revolutions,
         **({} if force is None else {"max_force": force}),
     )
-    at = _quantity(speed, "speed", "--speed", "15000 rpm") or float(loaded.speeds[-1])
+    at = positive(speed, "speed", "--speed", "15000 rpm") or float(loaded.speeds[-1])
     study = study_control(_case(loaded, clearance, model), at, _mass(loaded, mass), wishes)
     document = _study_document(study)
     if folder is not None:
@@ -90,25 +91,14 @@ def control(
         output.show(*map(str, document.get("files", [])))
     if study.holds:
         return DONE
-    held = document["controlled"]
-    output.warn(f"the actuator does not hold the rotor: {held['status']}, {held['message']}")
+    run = document["controlled"]
+    output.warn(f"the actuator does not hold the rotor: {run['status']}, {run['message']}")
     return INCOMPLETE
-
-
-def _quantity(text: str | None, kind: str, key: str, example: str) -> float | None:
-    from ..units import parse_quantity
-
-    if text is None:
-        return None
-    value = parse_quantity(text, kind, key=key, example=example)
-    if value <= 0.0:
-        raise InputError("must be above 0", key=key, value=text)
-    return value
 
 
 def _mass(scenario: Scenario, text: str | None) -> float:
     own = None if scenario.rotor is None else scenario.rotor.rigid_mass
-    mass = wanted_mass(text) or own
+    mass = positive(text, "mass", "--mass", "1200 kg") or own
     if mass is None:
         raise InputError('is missing: a rigid rotor, e.g. "900 kg"', key="--mass")
     return mass

@@ -7,29 +7,27 @@ from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-import typer
-
 from ..errors import TableError
 from ..status import SolveStatus
-from .inputs import (
-    asked_scenario,
-    check_file,
-    check_workers,
-    cluster,
-    journal_path,
-    table_path,
-    wanted_cases,
-    wanted_speeds,
-)
 from .options import (
     ClearanceOption,
     LoadOption,
     ModelOption,
+    OutputFolder,
     ScenarioArgument,
     SchedulerOption,
     SpeedOption,
     SupplyTemperatureOption,
     WorkersOption,
+    asked_scenario,
+    check_file,
+    check_workers,
+    cluster,
+    journal_path,
+    option,
+    table_path,
+    wanted_cases,
+    wanted_speeds,
 )
 from .output import DONE, INCOMPLETE, Output
 
@@ -39,6 +37,7 @@ if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
+
 
 _MANY = 4
 """Points from which on a list is shown instead of each in full."""
@@ -91,7 +90,7 @@ def check(output: Output, scenario: ScenarioArgument) -> int:
         }
     )
     if not (output.json or output.quiet):
-        from .check_table import overview
+        from .tables import overview
 
         output.show(*overview(loaded, cases))
     for text in warnings:
@@ -116,7 +115,7 @@ def solve(
     from ..bearing.operating_point import point_to_dict
     from ..files.scenario import load_scenario
     from ..study.sweep import sweep_points
-    from .progress import film_progress
+    from .output import film_progress
 
     loaded = load_scenario(scenario)
     loaded = asked_scenario(loaded, clearance, load, supply_temperature)
@@ -143,10 +142,7 @@ def table(
     output: Output,
     scenario: ScenarioArgument,
     file: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="The table.", show_default="coefficients/NAME.nc"
-        ),
+        Path | None, option("--output -o", "FILE", "The table.", "coefficients/NAME.nc")
     ] = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
@@ -184,7 +180,7 @@ def computed_table(
     """
     from ..study.journal import Journal
     from ..study.sweep import as_table, sweep_points
-    from .progress import film_progress
+    from .output import film_progress
 
     check_workers(workers)
     check_file(path, ".nc", scenario.source)
@@ -246,3 +242,88 @@ def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     for text in grouped_warnings(points):
         output.warn(text)
     return INCOMPLETE if bad else DONE
+
+
+def run(
+    output: Output,
+    scenario: ScenarioArgument,
+    folder: OutputFolder = Path(),
+    workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
+) -> int:
+    """Do the whole job: coefficients, stability map, orbits, figures, recording, summary.
+
+    Example: rotorsim run scenarios/dal.toml
+    """
+    from .machine_commands import is_machine, run_machine
+
+    if is_machine(scenario):
+        return run_machine(output, scenario, folder, workers)
+    from ..files.scenario import load_scenario
+    from ..show.job import write_results
+    from ..study.main_job import compute, summary
+
+    loaded = load_scenario(scenario)
+    name = scenario.stem
+    count = len(loaded.radial_clearances) * len(loaded.thermal_models) * len(loaded.speeds)
+    output.note(f"{loaded.title}: {count} film points")
+    if not _compiled_before():
+        output.note("first run: the film kernels are compiled now, which can take a minute")
+    path = table_path(scenario, folder)
+    points, table = computed_table(output, loaded, path, workers, scheduler)
+    results = compute(loaded, points, table, output.note)
+    files, problems = write_results(results, folder, name, output.note)
+    problems = [*results.problems, *problems]
+    said = summary(results, {"coefficients": [path], **files}) | {"problems": problems}
+    output.document(said)
+    if not (output.json or output.quiet):
+        from .tables import closing
+
+        output.show(*closing(said, results.curves))
+    code = report_points(output, points)
+    for problem in problems:
+        output.complain(problem)
+    return INCOMPLETE if problems else code
+
+
+def _compiled_before() -> bool:
+    """Whether an earlier run left compiled code in the cache."""
+    import os
+
+    folder = Path(__file__).parents[1] / "film" / "__pycache__"
+    return bool(os.environ.get("NUMBA_CACHE_DIR")) or any(folder.glob("*.nbi"))
+
+
+def report(
+    output: Output,
+    scenario: ScenarioArgument,
+    file: Annotated[
+        Path | None, option("--output -o", "FILE", "The page.", "reports/NAME.html")
+    ] = None,
+    workers: WorkersOption = None,
+    scheduler: SchedulerOption = None,
+) -> int:
+    """Write one HTML page to attach to a design review: inputs, warnings, results, margins.
+
+    It holds its figures, needs no network and prints well. The table is kept in coefficients/.
+
+    Example: rotorsim report scenarios/quick.toml -o quick.html
+    """
+    from ..files.scenario import load_scenario
+    from ..show.report import write_report
+    from ..study.main_job import compute
+
+    loaded = load_scenario(scenario)
+    page = file or Path("reports") / f"{scenario.stem}.html"
+    check_file(page, ".html", scenario)
+    table = table_path(scenario, Path())
+    points, coefficients = computed_table(output, loaded, table, workers, scheduler)
+    results = compute(loaded, points, coefficients, output.note)
+    output.note("report")
+    path = write_report(results, page)
+    output.document({"report": path, "table": table, "problems": results.problems})
+    output.show(f"{path} is written; open it in a browser")
+    code = report_points(output, points)
+    for problem in results.problems:
+        output.complain(problem)
+    return INCOMPLETE if results.problems else code

@@ -10,8 +10,7 @@ import numpy as np
 
 from ..errors import InputError
 from ..rows import RPM, ZERO_CELSIUS, number
-from .output import DONE, INCOMPLETE, Output
-from .progress import film_progress
+from .output import DONE, INCOMPLETE, Output, film_progress
 from .tables import grid
 
 if TYPE_CHECKING:

@@ -11,10 +11,17 @@ import typer
 
 from ..errors import InputError
 from .film_commands import computed_table
-from .inputs import check_file, given_table, table_path
-from .options import BearingOption, ModelOption, ScenarioArgument, WorkersOption
-from .output import DONE, INCOMPLETE, Output, as_typed
-from .progress import late_progress, progress_bar
+from .options import (
+    BearingOption,
+    ModelOption,
+    ScenarioArgument,
+    WorkersOption,
+    check_file,
+    given_table,
+    option,
+    table_path,
+)
+from .output import DONE, INCOMPLETE, Output, as_typed, late_progress, progress_bar
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
@@ -26,22 +33,15 @@ def orbit(
     output: Output,
     scenario: ScenarioArgument,
     table: Annotated[
-        Path | None,
-        typer.Option(
-            "--table", "-t", metavar="FILE", help="Use this table.", show_default="computed"
-        ),
+        Path | None, option("--table -t", "FILE", "Use this table.", "computed")
     ] = None,
     bearing: BearingOption = None,
     model: ModelOption = None,
     recording: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", metavar="FILE", help="The recording.", show_default="logs/NAME.rrd"
-        ),
+        Path | None, option("--output -o", "FILE", "The recording.", "logs/NAME.rrd")
     ] = None,
     figures: Annotated[
-        bool,
-        typer.Option("--figures", help="Write orbits and cascades to figures/NAME too."),
+        bool, typer.Option("--figures", help="Write orbits and cascades to figures/NAME too.")
     ] = False,
     gif: Annotated[
         bool, typer.Option("--gif", help="Write the animation figures/NAME/orbit.gif too.")
@@ -96,7 +96,7 @@ def orbit(
     rows = [describe_orbit(one) for one in orbits]
     output.document({"recording": path, "figures": written, "orbits": rows})
     if not (output.json or output.quiet):
-        from .stability_tables import orbit_details, orbit_table
+        from .tables import orbit_details, orbit_table
 
         output.show(orbit_table(rows), *orbit_details(rows))
         output.show(*(str(file) for file in written))

@@ -2,49 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from enum import StrEnum
+from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from ..errors import InputError
 from ..file_kinds import FileKind, kind_of, sentence
 from .film_commands import computed_table
-from .inputs import cluster, given_table, table_path, wanted_mass
-from .options import BearingOption, ModelOption, SchedulerOption, WorkersOption
-from .output import DONE, INCOMPLETE, Output
-from .stability_options import (
-    AXES,
-    Axis,
-    CellsOption,
-    DofsOption,
+from .options import (
+    OWN,
+    ROTOR,
+    BearingOption,
     FolderOption,
-    HeldClearanceOption,
-    HeldLoadOption,
-    HeldSpeedOption,
-    HeldSupplyOption,
     MassOption,
-    Mesh,
-    MeshOption,
-    ModesOption,
-    NodesOption,
-    RotorOption,
-    SamplesOption,
-    ShaftStiffnessOption,
-    SourceArgument,
-    SpeedsOption,
-    ToleranceOption,
-    TolerancesOption,
-    XOption,
-    XValuesOption,
-    YOption,
-    YValuesOption,
-    axis_named,
-    axis_values,
-    held_values,
-    wanted_rotor,
-    wanted_tolerances,
+    ModelOption,
+    SchedulerOption,
+    WorkersOption,
+    cluster,
+    file_or_shipped,
+    given_table,
+    option,
+    positive,
+    table_path,
 )
+from .output import DONE, INCOMPLETE, Output
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,34 +38,177 @@ if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
     from ..model import MeshSize
+    from ..model.tolerances import ToleranceSettings
+    from ..rotor import Rotor
     from ..study.planes import Plane
+
+
+_MAP, _TOLERANCES = "Map over two inputs", "Tolerances"
+
+_MOST_VALUES = 1000
+
+_SHORT = {"clearance": "radial_clearance", "applied_load": "load"}
+"""Other names of inputs, to those of a scenario's ``[tolerances]``."""
+
+
+class _Axis(StrEnum):
+    """Inputs that a stability map can go over."""
+
+    SPEED = "speed"
+    MASS = "mass"
+    CLEARANCE = "clearance"
+    LOAD = "load"
+    SUPPLY_TEMPERATURE = "supply-temperature"
+
+
+class _Mesh(StrEnum):
+    """Mesh for analyses that solve many films."""
+
+    SCENARIO = "scenario"
+    COARSE = "coarse"
+
+
+_AXES = {
+    _Axis.SPEED: ("speed", "speed", "15000 rpm"),
+    _Axis.MASS: ("mass", "mass", "900 kg"),
+    _Axis.CLEARANCE: ("radial_clearance", "length", "100 um"),
+    _Axis.LOAD: ("applied_load", "force", "10 kN"),
+    _Axis.SUPPLY_TEMPERATURE: ("supply_temperature", "temperature", "40 degC"),
+}
+"""Dimension of the table, kind of quantity, example."""
+
+
+def _held(axis: _Axis, default: str = OWN) -> Any:
+    text = f'Hold it, e.g. "{_AXES[axis][2]}".'
+    return option(f"--{axis.value}", _AXES[axis][1].upper(), text, default, _MAP)
+
+
+def _axis(letter: str) -> Any:
+    text = f"Map: {letter} axis, one of {', '.join(_Axis)}."
+    return option(f"--{letter}", "INPUT", text, panel=_MAP)
+
+
+def _axis_values(letter: str) -> Any:
+    text = 'A list "2 kN, 5 kN", or start, stop and count "2 kN : 20 kN : 9".'
+    return option(f"--{letter}-values", "VALUES", text, f"{OWN}, or about them", _MAP)
+
+
+_Source = Annotated[
+    Path,
+    typer.Argument(
+        metavar="TABLE-or-SCENARIO",
+        help="Table (netCDF, CSV, ROSS), or scenario.",
+        callback=file_or_shipped,
+    ),
+]
+_ShaftStiffness = Annotated[
+    str | None,
+    option(
+        "--shaft-stiffness", "STIFFNESS",
+        'A flexible shaft: its stiffness per bearing, e.g. "200 MN/m"; --mass is the disc.',
+        "rigid", ROTOR,
+    ),
+]  # fmt: skip
+_RotorFile = Annotated[
+    Path | None,
+    option(
+        "--rotor", "FILE",
+        "Any rotor: matrices M, K, D (or C) and G in a .npz or .mat file (SI), without the "
+        "bearings; bearing_nodes, dofs_per_node. Its x lies along the load; G times the speed adds "
+        "to D for a shaft that turns from x to y; every bearing node gets the same film.",
+        OWN, ROTOR,
+    ),
+]  # fmt: skip
+_Nodes = Annotated[
+    str | None,
+    option(
+        "--bearing-nodes", "LIST", 'Nodes that bearings carry, from 0, e.g. "1,7".', "the file's",
+        ROTOR,
+    ),
+]  # fmt: skip
+_Dofs = Annotated[
+    int | None,
+    option(
+        "--dofs-per-node", "N", "Degrees of freedom of a node, x and y first.",
+        "the file's, or 4", ROTOR,
+    ),
+]  # fmt: skip
+_Modes = Annotated[
+    int,
+    option("--modes", "N", "Branches to follow, lowest first.", True, ROTOR, min=1, max=1000),
+]
+_X = Annotated[str | None, _axis("x")]
+_Y = Annotated[str | None, _axis("y")]
+_XValues = Annotated[str | None, _axis_values("x")]
+_YValues = Annotated[str | None, _axis_values("y")]
+_Speed = Annotated[str | None, _held(_Axis.SPEED, f"{OWN} highest")]
+_Load = Annotated[str | None, _held(_Axis.LOAD)]
+_Clearance = Annotated[str | None, _held(_Axis.CLEARANCE)]
+_Supply = Annotated[str | None, _held(_Axis.SUPPLY_TEMPERATURE)]
+_Cells = Annotated[
+    int,
+    option(
+        "--cells", "N", "Of the map along each axis; 0: the values given.", True, _MAP,
+        min=0, max=5000,
+    ),
+]  # fmt: skip
+_MeshOption = Annotated[
+    _Mesh, option("--mesh", None, "Coarse: many films in a short time.", True, _TOLERANCES)
+]
+_Tolerances = Annotated[
+    bool,
+    option(
+        "--tolerances", None, "What the scenario's tolerances make of the threshold.",
+        True, _TOLERANCES,
+    ),
+]  # fmt: skip
+_Tolerance = Annotated[
+    list[str] | None,
+    option(
+        "--tolerance", "NAME=SPREAD",
+        'One more, e.g. "radial_clearance=5 um" or "viscosity=10 %"; may be repeated.',
+        panel=_TOLERANCES,
+    ),
+]  # fmt: skip
+_Samples = Annotated[
+    int | None,
+    option("--samples", "N", "Sets of inputs.", f"{OWN}, or 256", _TOLERANCES, min=8, max=100_000),
+]
+_Speeds = Annotated[
+    str | None,
+    option(
+        "--speeds", "VALUES",
+        'For constant coefficients: a list "3000 rpm, 6000 rpm", or start, stop and count.',
+        "1000 rpm : 20000 rpm : 20",
+    ),
+]  # fmt: skip
 
 
 def stability(
     output: Output,
-    source: SourceArgument,
+    source: _Source,
     mass: MassOption = None,
-    shaft_stiffness: ShaftStiffnessOption = None,
-    rotor: RotorOption = None,
-    bearing_nodes: NodesOption = None,
-    dofs_per_node: DofsOption = None,
-    modes: ModesOption = 8,
-    x: XOption = None,  # type: ignore[valid-type]
-    x_values: XValuesOption = None,  # type: ignore[valid-type]
-    y: YOption = None,  # type: ignore[valid-type]
-    y_values: YValuesOption = None,  # type: ignore[valid-type]
-    speed: HeldSpeedOption = None,  # type: ignore[valid-type]
-    load: HeldLoadOption = None,  # type: ignore[valid-type]
-    clearance: HeldClearanceOption = None,  # type: ignore[valid-type]
-    supply_temperature: HeldSupplyOption = None,  # type: ignore[valid-type]
-    cells: CellsOption = 101,
-    tolerances: TolerancesOption = False,
-    tolerance: ToleranceOption = None,
-    samples: SamplesOption = None,
-    mesh: MeshOption = Mesh.SCENARIO,
+    shaft_stiffness: _ShaftStiffness = None,
+    rotor: _RotorFile = None,
+    bearing_nodes: _Nodes = None,
+    dofs_per_node: _Dofs = None,
+    modes: _Modes = 8,
+    x: _X = None,
+    x_values: _XValues = None,
+    y: _Y = None,
+    y_values: _YValues = None,
+    speed: _Speed = None,
+    load: _Load = None,
+    clearance: _Clearance = None,
+    supply_temperature: _Supply = None,
+    cells: _Cells = 101,
+    tolerances: _Tolerances = False,
+    tolerance: _Tolerance = None,
+    samples: _Samples = None,
+    mesh: _MeshOption = _Mesh.SCENARIO,
     model: ModelOption = None,
     bearing: BearingOption = None,
-    speeds: SpeedsOption = None,
+    speeds: _Speeds = None,
     folder: FolderOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
@@ -99,10 +228,10 @@ def stability(
     if is_machine(source):
         own = {"--mass": mass, "--rotor": rotor, "--shaft-stiffness": shaft_stiffness}
         return machine_stability(output, source, own, workers)
-    given = wanted_mass(mass)
-    held = held_values(
-        {Axis.SPEED: speed, Axis.LOAD: load, Axis.CLEARANCE: clearance,
-         Axis.SUPPLY_TEMPERATURE: supply_temperature}
+    given = positive(mass, "mass", "--mass", "1200 kg")
+    held = _held_values(
+        {_Axis.SPEED: speed, _Axis.LOAD: load, _Axis.CLEARANCE: clearance,
+         _Axis.SUPPLY_TEMPERATURE: supply_temperature}
     )  # fmt: skip
     rotor_texts = (given, shaft_stiffness, rotor, bearing_nodes, dofs_per_node)
     if x is not None or y is not None:
@@ -117,10 +246,10 @@ def stability(
     work = _Work(output, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
     if tolerances or tolerance or samples:
         return _show_tolerances(work, source, held, rotor_texts, tolerance, samples)
-    if held or mesh is not Mesh.SCENARIO:
+    if held or mesh is not _Mesh.SCENARIO:
         raise InputError(
             "goes with a map (--x, --y) or with --tolerances",
-            key=next((f"--{a.value}" for a, (n, *_) in AXES.items() if n in held), "--mesh"),
+            key=next((f"--{a.value}" for a, (n, *_) in _AXES.items() if n in held), "--mesh"),
         )
     return _show_curves(work, source, rotor_texts, modes)
 
@@ -129,7 +258,7 @@ class _Work:
     """What the three analyses share."""
 
     def __init__(
-        self, output: Output, model: str | None, mesh: Mesh, cells: int, folder: Path | None,
+        self, output: Output, model: str | None, mesh: _Mesh, cells: int, folder: Path | None,
         workers: int | None, scheduler: str | None, bearing: str | None, speeds: str | None,
     ) -> None:  # fmt: skip
         self.output, self.model, self.cells, self.folder = output, model, cells, folder
@@ -147,7 +276,7 @@ class _Work:
             table = given_table(self.output, source, self.bearing)
             if self.speeds is None:
                 return table
-            return table.with_speeds(axis_values(self.speeds, Axis.SPEED, "--speeds"))
+            return table.with_speeds(_read_values(self.speeds, _Axis.SPEED, "--speeds"))
         kind = kind_of(source)
         if kind not in (None, FileKind.SCENARIO):
             message = f"{sentence(kind)}; here a table or a scenario is needed"
@@ -162,7 +291,7 @@ class _Work:
         """In place of the scenario's."""
         from ..study.axes import COARSE
 
-        return COARSE if self.mesh is Mesh.COARSE else None
+        return COARSE if self.mesh is _Mesh.COARSE else None
 
     def finish(self, document: dict[str, Any], figures: Any, parts: Callable[[], list]) -> None:
         """Write the figures, print the document or the tables."""
@@ -180,15 +309,14 @@ class _Work:
 def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[float] | None]:
     """Values of both axes by dimension; None: left to the map."""
     found: dict[str, list[float] | None] = {}
-    for option, (text, values) in texts.items():
+    for key, (text, values) in texts.items():
         if text is None:
-            raise InputError("a map needs both --x and --y", key=option)
-        axis = axis_named(text, option)
-        name = AXES[axis][0]
+            raise InputError("a map needs both --x and --y", key=key)
+        axis = _axis_named(text, key)
+        name = _AXES[axis][0]
         if name in found:
-            raise InputError("must differ from --x", key=option, value=axis.value)
-        key = f"{option}-values"
-        found[name] = None if values is None else axis_values(values, axis, key)
+            raise InputError("must differ from --x", key=key, value=axis.value)
+        found[name] = None if values is None else _read_values(values, axis, f"{key}-values")
     return found
 
 
@@ -214,7 +342,7 @@ def _plane(
     """The map and its title."""
     from ..files.scenario import load_scenario
     from ..study.planes import plane_of_scenario, plane_of_table
-    from .progress import film_progress
+    from .output import film_progress
 
     x, y = axes
     values = {name: found for name, found in axes.items() if found is not None}
@@ -273,7 +401,7 @@ def _show_tolerances(
     ):
         study = study_tolerances(
             scenario,
-            wanted_tolerances(scenario, texts, samples),
+            _wanted_tolerances(scenario, texts, samples),
             rotor=wanted_rotor(scenario, *rotor_texts),
             operating_speed=held.get("speed"),
             radial_clearance=held.get("radial_clearance"),
@@ -316,7 +444,7 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
     from ..show.stability_figures import campbell_figures
     from ..study.stability import campbell_curves, stability_curves
     from .stability_results import branches_table, curve_row, modes_table, threshold_table
-    from .stability_tables import curve_table, summary_table
+    from .tables import curve_table, summary_table
 
     output = work.output
     scenario, stored = _source(work, source)
@@ -391,3 +519,133 @@ def _scenario_of(output: Output, source: Path, table: CoefficientTable) -> Scena
     except InputError as error:
         output.note(f"the table's scenario cannot be read here, so give --mass: {error}")
         return None
+
+
+def _axis_named(text: str, key: str) -> _Axis:
+    """Return the axis by its name here, in a table or in a scenario."""
+    for axis, (dimension, *_) in _AXES.items():
+        if text.replace("_", "-") in (axis.value, dimension.replace("_", "-")):
+            return axis
+    raise InputError(f"must be one of {', '.join(_Axis)}", key=key, value=text)
+
+
+def _read_values(text: str, axis: _Axis, key: str) -> list[float]:
+    """Return the ascending values [SI] of ``--x-values`` and ``--y-values``."""
+    _, kind, example = _AXES[axis]
+
+    def value(word: str) -> float:
+        found = positive(word, kind, key, example)
+        assert found is not None
+        return found
+
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) == 3:
+        if not parts[2].isascii() or not parts[2].isdigit() or not 2 <= int(parts[2]) <= 1000:
+            message = f"the count must be a whole number from 2 to {_MOST_VALUES}"
+            raise InputError(message, key=key, value=text)
+        first, last = (value(part) for part in parts[:2])
+        step = (last - first) / (int(parts[2]) - 1)
+        values = [first + i * step for i in range(int(parts[2]) - 1)] + [last]
+    elif len(parts) == 1:
+        values = [value(part.strip()) for part in text.split(",")]
+    else:
+        message = f'must be a list "{example}, ..." or "start : stop : count"'
+        raise InputError(message, key=key, value=text)
+    if len(values) > _MOST_VALUES or any(b <= a for a, b in pairwise(values)):
+        raise InputError(f"must ascend, at most {_MOST_VALUES} values", key=key, value=text)
+    return values
+
+
+def _held_values(texts: Mapping[_Axis, str | None]) -> dict[str, float]:
+    """Return the values [SI] of the options that hold an input, by dimension."""
+    found = {
+        _AXES[a][0]: positive(t, _AXES[a][1], f"--{a.value}", _AXES[a][2]) for a, t in texts.items()
+    }
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def wanted_rotor(
+    scenario: Scenario | None,
+    mass: float | None,
+    shaft_stiffness: str | None,
+    file: Path | None,
+    nodes: str | None,
+    dofs: int | None,
+) -> Rotor | None:
+    """Rotor of the options, else the scenario's; None without either."""
+    from ..files.rotors import load_rotor
+    from ..rotor import Rotor
+
+    if file is not None:
+        if mass is not None or shaft_stiffness is not None:
+            raise InputError(
+                "goes without --mass and --shaft-stiffness", key="--rotor", value=str(file)
+            )
+        return load_rotor(file, _node_list(nodes), dofs)
+    if nodes is not None or dofs is not None:
+        key = "--bearing-nodes" if nodes is not None else "--dofs-per-node"
+        raise InputError("goes with --rotor FILE", key=key)
+    if shaft_stiffness is not None:
+        stiffness = positive(shaft_stiffness, "stiffness", "--shaft-stiffness", "200 MN/m")
+        assert stiffness is not None
+        return _jeffcott(None if scenario is None else scenario.rotor, mass, stiffness)
+    if mass is not None:
+        return Rotor.rigid(mass)
+    return None if scenario is None else scenario.rotor
+
+
+def _jeffcott(own: Rotor | None, mass: float | None, stiffness: float) -> Rotor:
+    """Jeffcott rotor of the options: `mass` is the disc's, what is not given the scenario's."""
+    from ..rotor import Rotor
+
+    parts = {} if own is None else dict(own.parameters)
+    if mass is None and own is None:
+        raise InputError('needs the disc: --mass "900 kg"', key="--shaft-stiffness")
+    if mass is not None or own is None or own.kind != "jeffcott":
+        return Rotor.jeffcott(parts["mass"] if mass is None else mass, stiffness)
+    return Rotor.jeffcott(**(parts | {"shaft_stiffness": stiffness}))
+
+
+def _node_list(text: str | None) -> tuple[int, ...] | None:
+    """Node numbers of ``--bearing-nodes``."""
+    if text is None:
+        return None
+    words = [word.strip() for word in text.split(",")]
+    if not all(word.isascii() and word.isdigit() and len(word) < 7 for word in words):
+        raise InputError(
+            'must be whole numbers from 0, such as "1,7"', key="--bearing-nodes", value=text
+        )
+    return tuple(int(word) for word in words)
+
+
+def _wanted_tolerances(
+    scenario: Scenario, texts: Sequence[str] | None, samples: int | None
+) -> ToleranceSettings:
+    """The scenario's tolerances with those of the options."""
+    from dataclasses import replace
+
+    from ..model.tolerances import KINDS, ToleranceSettings, parse_spread
+
+    found: dict[str, Any] = {}
+    for text in texts or ():
+        name, sign, value = (part.strip() for part in text.partition("="))
+        name = name.replace("-", "_")
+        name = _SHORT.get(name, name)
+        if not sign or name not in KINDS:
+            raise InputError(
+                f"must be NAME=SPREAD, NAME one of {', '.join(KINDS)}",
+                key="--tolerance",
+                value=text,
+            )
+        try:
+            found[name] = parse_spread(value, name)
+        except InputError as error:
+            raise InputError(error.message, key=f"--tolerance {name}", value=value) from None
+    if not found and scenario.tolerances is None:
+        raise InputError(
+            'needs tolerances: --tolerance "radial_clearance=5 um", or a section [tolerances] in '
+            "the scenario",
+            key="--tolerances",
+        )
+    base = scenario.tolerances or ToleranceSettings(**found)
+    return replace(base, **found, samples=samples or base.samples)

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..rows import QUANTITIES, RPM, number
-from ..study.wording import curve_title
 from .tables import grid
 
 if TYPE_CHECKING:
@@ -44,7 +43,7 @@ def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
 def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """The least stable oscillating mode over speed."""
     head = ("rpm", "mode", "Hz", "f/rev", "damping ratio", "log decrement", "growth 1/s", "whirl")
-    table = grid(f"Least stable mode: {curve_title(curve)}", *head)
+    table = grid(f"Least stable mode: {curve.title}", *head)
     found = modes.branches
     whirl = found.whirl
     if not found.eigenvalues.shape[1]:
@@ -72,7 +71,7 @@ def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
     whirl = found.whirl
     top = f"{found.parameter[-1] * RPM:.0f} rpm"
     head = ("mode", "Hz", "f/rev", "damping ratio", "log decrement", "whirl")
-    table = grid(f"Modes at {top}: {curve_title(curve)}", *head)
+    table = grid(f"Modes at {top}: {curve.title}", *head)
     for k in range(found.eigenvalues.shape[1]):
         frequency = float(found.damped_frequency[-1, k])
         table.add_row(
@@ -95,10 +94,10 @@ def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell])
             verdict = "stable throughout" if known.size and known.max() < 0.0 else "-"
             verdict = "unstable throughout" if known.size and known.min() > 0.0 else verdict
             verdict = "undamped throughout" if known.size and not known.any() else verdict
-            table.add_row(curve_title(curve), "none", "", "", verdict)
+            table.add_row(curve.title, "none", "", "", verdict)
         for one in found.thresholds:
             table.add_row(
-                curve_title(curve),
+                curve.title,
                 f"{one.speed * RPM:.0f}",
                 number(one.whirl_frequency / (2.0 * math.pi)),
                 number(one.whirl_frequency_ratio, 3),

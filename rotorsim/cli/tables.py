@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from rich.table import Table
 from rich.text import Text
 
@@ -17,10 +19,23 @@ from ..bearing.description import (
     point_text,
     point_title,
 )
-from ..rows import QUANTITIES
+from ..model import ThermalModel
+from ..orbit.description import ORBIT_HEADS, ellipse_text, orbit_texts, whirl_range_text
+from ..rows import QUANTITIES, RPM, ZERO_CELSIUS, number
+from ..study.inputs import input_rows
+from ..study.stability import late_whirl, verdict_word
+from .output import as_typed
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from rich.console import RenderableType
+    from rich.table import Table
+
     from ..bearing.operating_point import OperatingPoint
+    from ..files.scenario import Scenario
+    from ..study.stability import StabilityCurve
+
 
 _COLUMNS = (
     "speed", "eccentricity_ratio", "load", "min_film_thickness", "max_pressure",
@@ -66,6 +81,278 @@ def point_table(point: OperatingPoint) -> Table:
     for row in point_rows(point):
         table.add_row(*row)
     table.columns[2].justify = "left"
-    for number, (name, first, second, unit) in enumerate(matrix_rows(point)):
-        table.add_row(name, f"{first:>12}  {second:>12}", unit, end_section=number % 2 == 1)
+    for place, (name, first, second, unit) in enumerate(matrix_rows(point)):
+        table.add_row(name, f"{first:>12}  {second:>12}", unit, end_section=place % 2 == 1)
+    return table
+
+
+def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[RenderableType]:
+    """Inputs, derived numbers at the highest speed, and the amount of work."""
+    yield _inputs(scenario)
+    table = grid(
+        f"At {scenario.speeds[-1] * RPM:.0f} rpm", "model", "c µm", "U m/s", "Sommerfeld",
+        "Reynolds", "Taylor", "Peclet", "Nahme", "dT adiab. K",
+    )  # fmt: skip
+    numbers = ("sommerfeld", "reynolds", "taylor", "peclet", "nahme")
+    for case in cases:
+        table.add_row(
+            case["thermal_model"].value,
+            number(case["radial_clearance"] * 1e6),
+            number(case["surface_speed"]),
+            *(number(case[f"{name}_number"]) for name in numbers),
+            number(case["adiabatic_temperature_rise"], 3),
+        )
+    yield table
+    heated = [case for case in cases if case["thermal_model"] is ThermalModel.THD]
+    if heated:
+        yield _warm_table(heated)
+    mesh, speeds = scenario.film.mesh, len(scenario.speeds)
+    work = (
+        f"{count} {what}{'s' * (count != 1)}"
+        for count, what in ((len(cases), "case"), (speeds, "speed"), (len(cases) * speeds, "point"))
+    )
+    yield (
+        f"{next(work)} x {next(work)} = {next(work)} on {mesh.circumferential} x {mesh.axial} x "
+        f"{mesh.cross_film} cells (around, along, across)"
+    )
+
+
+def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
+    """Flow numbers with the viscosity at supply temperature and in the estimated warm film."""
+    table = grid("Cold, and warm (estimated)", "c µm", "T °C", "mPa s", "Reynolds", "Taylor")
+    for case in cases:
+        cold = number(case["radial_clearance"] * 1e6), "supply_temperature", ""
+        for clearance, temperature, state in (cold, ("", "warm_temperature", "warm_")):
+            table.add_row(
+                clearance,
+                number(case[temperature] - ZERO_CELSIUS, 3),
+                number(case[f"{state}viscosity"] * 1e3),
+                number(case[f"{state}reynolds_number"]),
+                number(case[f"{state}taylor_number"]),
+            )
+    return table
+
+
+def _inputs(scenario: Scenario) -> RenderableType:
+    table = grid(scenario.title, "", "")
+    table.columns[1].justify = "left"
+    table.columns[1].no_wrap = False
+    for rows in input_rows(scenario).values():
+        for row in rows:
+            table.add_row(row.label, row.with_unit)
+        table.add_section()
+    return table
+
+
+_VERDICTS = {
+    "always_stable": "stable at any mass",
+    "always_unstable": "unstable at any mass",
+    "reversed_threshold": "stable above",
+    "": "not converged",
+}
+_THRESHOLD = ("critical_mass", "critical_mass_dimensionless", "whirl_frequency_ratio")
+
+
+def curve_table(curve: StabilityCurve) -> Table:
+    """One curve over speed.
+
+    The critical mass is a rigid rotor's: beside another rotor it would not be that rotor's limit.
+    With tilting pads the last column is the growth rate that their coefficients, reduced at the
+    shaft's frequency, would give.
+    """
+    rigid = curve.eigenvalues is None or curve.mass is not None
+    head = ["rpm", *(QUANTITIES[name].head for name in _THRESHOLD), "verdict"] if rigid else ["rpm"]
+    if curve.eigenvalues is not None:
+        head += ["growth 1/s", "whirl rpm"] if rigid else ["verdict", "growth 1/s", "whirl rpm"]
+    synchronous = curve.growth_rate_synchronous
+    if synchronous is not None:
+        head.append("synchronous 1/s")
+    table = grid(curve.title, *head)
+    rates = curve.growth_rate
+    for index, speed in enumerate(curve.speed):
+        cells = [f"{speed * RPM:.0f}"]
+        if rigid:
+            cells += _threshold_cells(curve, index)
+        if curve.eigenvalues is not None and rates is not None:
+            slowest, rate = curve.eigenvalues[index, 0], float(rates[index])
+            if not rigid:
+                cells.append(verdict_word(rate) if math.isfinite(rate) else _VERDICTS[""])
+            cells += [number(rate), number(abs(slowest.imag) * RPM)]
+        if synchronous is not None:
+            cells.append(number(float(synchronous[index])))
+        table.add_row(*cells)
+    return table
+
+
+def _threshold_cells(curve: StabilityCurve, index: int) -> list[str]:
+    """Critical mass, dimensionless too, whirl ratio, and what they say of the mass."""
+    mass = curve.critical_mass[index]
+    verdict = str(curve.stability[index])
+    said = _VERDICTS.get(verdict)
+    if verdict == "threshold" and curve.mass is not None:
+        said = "stable" if curve.mass < mass else "unstable"
+    values = (QUANTITIES[name].text(getattr(curve, name)[index]) for name in _THRESHOLD)
+    return [*values, said or "stable below"]
+
+
+def summary_table(curves: Sequence[StabilityCurve]) -> Table:
+    """Threshold speeds of all curves."""
+    rotor = curves[0].rotor if curves else ""
+    title = rotor[:1].upper() + rotor[1:] or "Critical mass"
+    table = grid(title, "bearing", "least M_crit kg", "threshold speeds rpm")
+    for curve in curves:
+        known = curve.critical_mass[np.isfinite(curve.critical_mass)]
+        least = number(float(known.min())) if known.size else "-"
+        table.add_row(curve.title, least, curve.thresholds_text)
+    return table
+
+
+def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
+    """One line for each orbit (see `rotorsim.orbit.description.describe_orbit`)."""
+    expected = any("eigenvalue_growth_rate" in row for row in rows)
+    columns = ["model", "run", "speed", "turns", "eccentricity", "growth"]
+    columns += ["expected", "outcome"] if expected else ["outcome"]
+    by = " (expected: by the eigenvalues)" if expected else ""
+    table = grid(f"Orbits{by}", *(ORBIT_HEADS[name] for name in columns))
+    for row in rows:
+        texts = orbit_texts(row)
+        texts["run"] = texts["run"].removesuffix(" speed")
+        texts["speed"] = texts["speed"].replace(" to ", "-")
+        table.add_row(*(texts[name] for name in columns))
+    return table
+
+
+def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
+    """What each run came to: whirl, ellipse, least film; and what its force takes for granted."""
+    table = grid("What they come to", "model", "whirl ratio", "swing µm", "ellipse µm", "h_min µm")
+    notes = []
+    for row in rows:
+        table.add_row(
+            row["thermal_model"],
+            number(row["whirl_frequency_ratio"]),
+            number(row["amplitude"] * 1e6),
+            ellipse_text(row["whirl"] or row["synchronous"]),
+            number(row["min_film"] * 1e6),
+        )
+        if row["whirl_range"] is not None:
+            notes.append(f"{row['thermal_model']}: {whirl_range_text(row['whirl_range'])}")
+        notes += [f"{row['thermal_model']}: {row['message']}"] if row["message"] else []
+    return [table, *notes]
+
+
+_HEATED = ("load", "min_film_thickness", "max_pressure", "power_loss", "side_flow")
+"""What isothermal and THD are compared by."""
+_LEAST_WALL_SHARE = 0.005
+"""Of the heat through the walls, from which on it is said."""
+
+
+def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterator[RenderableType]:
+    """What was computed, what converged, headline results, where the files are."""
+    counts = ", ".join(f"{count} {status}" for status, count in said["counts"].items())
+    points = f": {sum(said['counts'].values())} film points, {counts}"
+    yield Text.assemble("\n", (said["title"], "bold"), points)
+    if said["heating"]:
+        yield heating_table(said["heating"], rigid=not curves or not _flexible(curves[0]))
+        lines = "\n".join(walls_lines(said["heating"]))
+        if lines:
+            yield lines
+    if curves:
+        yield _verdict_table(curves)
+    if said["orbits"]:
+        yield orbit_table(said["orbits"])
+        lines = "\n".join(late_whirl(said["orbits"], curves))
+        if lines:
+            yield lines
+    yield _files_table(said["files"])
+    for path in said["files"].get("recording", []):
+        yield f"Play it back: rotorsim view {as_typed(path)}"
+
+
+def _flexible(curve: StabilityCurve) -> bool:
+    """Whether the rotor is not the rigid one of which a critical mass speaks."""
+    return bool(curve.rotor) and curve.mass is None
+
+
+def heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> Table:
+    """Isothermal and THD at the highest speed, with what heating changes.
+
+    Beside a rotor that is not rigid no critical mass is shown.
+    """
+    columns = (*_HEATED, "max_temperature", *(["critical_mass"] if rigid else []))
+    heads = [QUANTITIES[name].head.replace("side flow", "flow") for name in columns]
+    table = grid(f"At {rows[0]['speed'] * RPM:.0f} rpm", "c µm", "model", *heads)
+    for row in rows:
+        models = _models(row)
+        for place, model in enumerate(models):
+            one = row[model]
+            table.add_row(
+                QUANTITIES["radial_clearance"].text(row["radial_clearance"]) if place == 0 else "",
+                model,
+                *(QUANTITIES[key].text(one[key], 4) for key in (*_HEATED, "max_temperature")),
+                *([_critical_mass(one)] if rigid else []),
+            )
+        if {"isothermal", "thd"} <= set(models):
+            table.add_row("", "by heating", *_changes(row["isothermal"], row["thd"], rigid=rigid))
+        table.add_section()
+    return table
+
+
+def walls_lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    """What leaves through bush and shaft instead of with the oil, where that is anything."""
+    for row in rows:
+        for model in _models(row):
+            share = row[model]["wall_heat_share"]
+            if share is not None and math.isfinite(share) and abs(share) >= _LEAST_WALL_SHARE:
+                yield (
+                    f"Through bush and shaft go {100.0 * share:.0f} % of the heat ({model}, "
+                    f"{QUANTITIES['radial_clearance'].said(row['radial_clearance'])})"
+                )
+
+
+def _models(row: Mapping[str, Any]) -> list[str]:
+    return [name for name in row if name not in ("radial_clearance", "speed")]
+
+
+def _critical_mass(one: Mapping[str, Any]) -> str:
+    if one["critical_mass"] is not None:
+        return QUANTITIES["critical_mass"].text(one["critical_mass"])
+    said = "" if one["stability"] is None else one["stability"].value
+    return said.removeprefix("always_").replace("_", " ") or "-"
+
+
+def _changes(cold: Mapping[str, Any], hot: Mapping[str, Any], *, rigid: bool) -> list[str]:
+    texts = [_percent(cold[key], hot[key]) for key in _HEATED]
+    mass = [_percent(cold["critical_mass"], hot["critical_mass"])] if rigid else []
+    return [*texts, "", *mass]
+
+
+def _percent(cold: float | None, hot: float | None) -> str:
+    if not cold or hot is None or not math.isfinite(hot / cold):
+        return ""
+    change = round(100.0 * (hot / cold - 1.0), 1)
+    return f"{change:+.1f} %" if change else "0 %"
+
+
+def _verdict_table(curves: Sequence[StabilityCurve]) -> Table:
+    """Whether the rotor is stable at the highest speed, and where that changes."""
+    rotor = curves[0].rotor
+    title = "Stability" + (f", {rotor}" if rotor else "")
+    top = f"at {curves[0].speed[-1] * RPM:.0f} rpm"
+    table = grid(title, "bearing", *([top] if rotor else []), "threshold rpm")
+    for curve in curves:
+        verdict = [curve.verdict or "-"] if rotor else []
+        table.add_row(curve.title, *verdict, curve.thresholds_text)
+    return table
+
+
+def _files_table(files: Mapping[str, Any]) -> Table:
+    """Where everything is."""
+    table = grid("Files", "what", "where")
+    table.columns[1].justify = "left"
+    table.columns[1].overflow = "fold"
+    for what, paths in files.items():
+        if len(paths) > 1:
+            table.add_row(what, f"{paths[0].parent} ({len(paths)} files)")
+        elif paths:
+            table.add_row(what, str(paths[0]))
     return table

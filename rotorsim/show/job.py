@@ -16,7 +16,7 @@ from ..rows import QUANTITIES, RPM
 from ..study.film_motion import film_at_rest
 from ..study.main_job import Announce, Attempts, Results, compute, summary
 from ..study.orbits import orbit_settings
-from ..study.wording import late_whirl
+from ..study.stability import late_whirl
 
 if TYPE_CHECKING:
     import xarray as xr

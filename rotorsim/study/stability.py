@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import itertools
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bearing.description import curve_title
 from ..machine.branches import Modes
 from ..machine.machine import Machine
 from ..machine.modes import eigenvalues_over_speed, known_speeds, modes
 from ..machine.support import TableSupport, table_support
 from ..machine.thresholds import ThresholdSpeed, threshold_speeds
 from ..rotor import Rotor
-from ..rows import number
+from ..rows import RPM, number
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
@@ -32,6 +35,11 @@ def _rotor_words(rotor: Rotor | None) -> str:
 
 
 Array = NDArray[np.float64]
+
+
+def verdict_word(growth_rate: float) -> str:
+    """``stable``, ``unstable`` or, where nothing damps or drives the rotor, ``undamped``."""
+    return "unstable" if growth_rate > 0.0 else "stable" if growth_rate < 0.0 else "undamped"
 
 
 @dataclass(frozen=True)
@@ -80,6 +88,50 @@ class StabilityCurve:
             return None
         rate = self.eigenvalues[:, 0].real
         return rate if self.undamped is None else np.where(self.undamped[:, 0], 0.0, rate)
+
+    @property
+    def title(self) -> str:
+        """``thd, c = 100 µm``, and what else the table was stacked along."""
+        own = ("thermal_model", "radial_clearance")
+        extra = [f"{k} = {number(v)}" for k, v in self.choices.items() if k not in own]
+        return curve_title(*(self.choices[name] for name in own), *extra)
+
+    @property
+    def verdict(self) -> str | None:
+        """``stable``, ``unstable`` or ``undamped`` at the highest speed; None: not known."""
+        if self.growth_rate is None or np.isnan(self.growth_rate[-1]):
+            return None
+        return verdict_word(float(self.growth_rate[-1]))
+
+    @property
+    def verdict_over_range(self) -> str | None:
+        """``stable throughout``, ``unstable throughout``, ``changes``.
+
+        None without a rotor, and where a speed is not known.
+        """
+        if self.threshold_speeds:
+            return "changes"
+        if self.growth_rate is None or not np.isfinite(self.growth_rate).all():
+            return None
+        words = {verdict_word(float(rate)) for rate in self.growth_rate}
+        return f"{words.pop()} throughout" if len(words) == 1 else "changes"
+
+    @property
+    def thresholds_text(self) -> str:
+        """Threshold speeds [rpm], or which verdict holds over which speeds."""
+        if self.threshold_speeds:
+            return ", ".join(f"{speed * RPM:.0f}" for speed in self.threshold_speeds)
+        if self.growth_rate is None:
+            return "-"
+        known = np.isfinite(self.growth_rate)
+        words = {verdict_word(float(rate)) for rate in self.growth_rate[known]}
+        if len(words) != 1:
+            return "-"
+        word, rpm = words.pop(), self.speed[known] * RPM
+        if rpm.size < self.speed.size:
+            return f"none: {word} at the {rpm.size} of {self.speed.size} speeds known"
+        span = f", {rpm[0]:.0f} to {rpm[-1]:.0f} rpm" if rpm[-1] > rpm[0] else ""
+        return f"none: {word}{span}"
 
 
 def stability_curves(
@@ -245,3 +297,27 @@ def _campbell(
         growth=every.largest_growth_rate,
         thresholds=tuple(threshold_speeds(machine)),
     )
+
+
+def late_whirl(
+    orbits: Iterable[Mapping[str, Any]], curves: Sequence[StabilityCurve]
+) -> Iterator[str]:
+    """Say why a run-up shows its whirl above the threshold speed, where it does.
+
+    `orbits` as `rotorsim.orbit.description.describe_orbit` gives them.
+    """
+    for said in orbits:
+        seen, model = said["whirl_range"], said["thermal_model"]
+        for curve in curves:
+            same = curve.choices["thermal_model"] == model and math.isclose(
+                curve.choices["radial_clearance"], said["radial_clearance"], rel_tol=1e-6
+            )
+            if seen is None or not same or not curve.threshold_speeds:
+                continue
+            threshold, first = curve.threshold_speeds[0], seen["first_speed"]
+            if said["speed"][1] > said["speed"][0] and threshold < first:
+                yield (
+                    f"threshold at {threshold * RPM:.0f} rpm ({model}), but the whirl is seen from "
+                    f"{first * RPM:.0f} rpm on: beyond the threshold it needs time to grow, while "
+                    "the speed goes on rising"
+                )

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .wording import verdict_at, verdict_over_range
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -68,8 +66,8 @@ def heating_effect(
             "min_film_thickness": point.min_film_thickness,
             "critical_mass": point.critical_mass,
             "stability": point.stability,
-            "verdict": None if curve is None else verdict_at(curve),
-            "verdict_over_range": None if curve is None else verdict_over_range(curve),
+            "verdict": None if curve is None else curve.verdict,
+            "verdict_over_range": None if curve is None else curve.verdict_over_range,
             "threshold_speeds": list(found),
             "threshold_speed": found[0] if found else None,
         }

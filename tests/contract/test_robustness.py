@@ -455,7 +455,7 @@ def dask(monkeypatch):
     }
     for name, fake in fakes.items():
         monkeypatch.setitem(sys.modules, name, fake)
-    monkeypatch.setattr("rotorsim.cli.inputs._PATIENCE", 0.1)
+    monkeypatch.setattr("rotorsim.cli.options._PATIENCE", 0.1)
 
 
 @pytest.mark.usefixtures("dask")

@@ -272,7 +272,7 @@ def test_another_shaft_keeps_the_disc_of_a_jeffcott_scenario():
     """The total mass of the scenario's rotor, disc and journal, is not the disc's."""
     from scenario_texts import BEARING, CONSTANT_OIL
 
-    from rotorsim.cli.stability_options import wanted_rotor
+    from rotorsim.cli.stability_command import wanted_rotor
     from rotorsim.files.scenario import Scenario
 
     scenario = Scenario.from_text(

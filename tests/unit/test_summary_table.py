@@ -7,7 +7,7 @@ import io
 import pytest
 from rich.console import Console
 
-from rotorsim.cli.summary_table import heating_table, walls_lines
+from rotorsim.cli.tables import heating_table, walls_lines
 from rotorsim.status import Stability
 
 

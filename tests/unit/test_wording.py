@@ -9,12 +9,6 @@ import pytest
 
 from rotorsim.rows import RPM, number
 from rotorsim.study.stability import StabilityCurve
-from rotorsim.study.wording import (
-    thresholds_text,
-    verdict_at,
-    verdict_at_top,
-    verdict_over_range,
-)
 
 
 @pytest.mark.parametrize(
@@ -61,7 +55,6 @@ def curve(rates: list[float] | None, thresholds: tuple[float, ...] = ()) -> Stab
 )  # fmt: skip
 def test_verdicts(rates, crossed, text, over, top):
     one = curve(rates, crossed)
-    assert thresholds_text(one) == text
-    assert verdict_over_range(one) == over
-    assert verdict_at(one) == top
-    assert verdict_at_top(one) == (top or "-")
+    assert one.thresholds_text == text
+    assert one.verdict_over_range == over
+    assert one.verdict == top

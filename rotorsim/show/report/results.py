@@ -16,7 +16,6 @@ from ...bearing.description import (
 )
 from ...orbit.description import ORBIT_HEADS, describe_orbit, orbit_texts
 from ...rows import QUANTITIES, RPM, number, table_html
-from ...study import wording
 
 if TYPE_CHECKING:
     from ...bearing.operating_point import OperatingPoint
@@ -97,7 +96,7 @@ def margins(curves: Sequence[StabilityCurve]) -> str:
 def _margin_row(curve: StabilityCurve) -> list[str]:
     critical = float(curve.critical_mass[-1])
     row = [
-        wording.curve_title(curve),
+        curve.title,
         number(critical) if math.isfinite(critical) else _verdict_words(curve),
         number(float(curve.critical_mass_dimensionless[-1])),
         number(float(curve.whirl_frequency_ratio[-1]), 3),
@@ -105,8 +104,8 @@ def _margin_row(curve: StabilityCurve) -> list[str]:
     if curve.growth_rate is None:
         return row
     row += [
-        wording.verdict_at_top(curve),
-        wording.thresholds_text(curve),
+        curve.verdict or "-",
+        curve.thresholds_text,
         number(float(curve.growth_rate[-1])),
         number(log_decrement(curve)),
     ]

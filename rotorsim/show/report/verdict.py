@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from ...bearing.description import point_text, point_title
 from ...rows import RPM
-from ...study.wording import curve_title, verdict_at_top, verdict_over_range
 from . import html
 
 if TYPE_CHECKING:
@@ -34,14 +33,14 @@ def _verdict(curves: Sequence[StabilityCurve]) -> tuple[str, str]:
     rotor = curves[0].rotor if curves else ""
     if not rotor:
         return "No rotor given: no verdict on it.", ""
-    said = {curve_title(curve): verdict_at_top(curve) for curve in curves}
+    said = {curve.title: curve.verdict or "-" for curve in curves}
     unstable = [name for name, verdict in said.items() if verdict == "unstable"]
     at = f"at {curves[0].speed[-1] * RPM:.0f} rpm with the {rotor}"
     if unstable:
         return f"Unstable {at}: {'; '.join(unstable)}.{_range(curves)}", "bad"
     if "-" in said.values():
         return f"No verdict {at} on every bearing.{_range(curves)}", ""
-    overall = {verdict_over_range(curve) for curve in curves}
+    overall = {curve.verdict_over_range for curve in curves}
     # Stable at the top and unstable below is no clean bill.
     kind = "good" if overall == {"stable throughout"} else ""
     return f"Stable {at} in every case computed.{_range(curves)}", kind
@@ -52,11 +51,11 @@ def _range(curves: Sequence[StabilityCurve]) -> str:
     if len(curves[0].speed) < 2:
         return ""
     span = f"{curves[0].speed[0] * RPM:.0f} to {curves[0].speed[-1] * RPM:.0f} rpm"
-    said = [verdict_over_range(curve) for curve in curves]
+    said = [curve.verdict_over_range for curve in curves]
     if set(said) in ({"stable throughout"}, {"unstable throughout"}):
         return f" So it is throughout {span}."
     changes = [
-        f"{curve_title(curve)} at {', '.join(f'{s * RPM:.0f}' for s in curve.threshold_speeds)} rpm"
+        f"{curve.title} at {', '.join(f'{s * RPM:.0f}' for s in curve.threshold_speeds)} rpm"
         for curve in curves
         if curve.threshold_speeds
     ]
