@@ -62,7 +62,7 @@ class _CheckedFile(IndexDataCacheFile):
 
 
 class _SourceCache(FunctionCache):
-    """Numba's cache, valid for `fingerprint` of a function; no fault of a disk is passed on."""
+    """Numba's cache, valid for `_fingerprint` of a function; no fault of a disk is passed on."""
 
     def __init__(self, dispatcher: Any) -> None:
         super().__init__(dispatcher.py_func)
@@ -89,7 +89,7 @@ class _SourceCache(FunctionCache):
 
     def _stamp(self) -> None:
         # Late: a function may be decorated before those that it calls.
-        self._cache_file._source_stamp = fingerprint(self._dispatcher)
+        self._cache_file._source_stamp = _fingerprint(self._dispatcher)
 
 
 def _tell_once() -> None:
@@ -103,7 +103,7 @@ def _tell_once() -> None:
         )  # fmt: skip
 
 
-def fingerprint(function: Callable[..., Any]) -> str:
+def _fingerprint(function: Callable[..., Any]) -> str:
     """SHA-256 of everything of this package that is compiled into a function.
 
     Examples
@@ -111,7 +111,7 @@ def fingerprint(function: Callable[..., Any]) -> str:
     >>> def double(x): return 2 * x
     >>> def twice(x): return 2 * x
     >>> def triple(x): return 3 * x
-    >>> fingerprint(double) == fingerprint(twice) != fingerprint(triple)
+    >>> _fingerprint(double) == _fingerprint(twice) != _fingerprint(triple)
     True
     """
     digest = hashlib.sha256()

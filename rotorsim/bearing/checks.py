@@ -56,7 +56,7 @@ class DerivedNumbers:
     warm_taylor_number: float
 
 
-def temperature_coefficient(case: Case, temperature: float) -> float:
+def _temperature_coefficient(case: Case, temperature: float) -> float:
     """-d ln(mu)/dT [1/K] of the case's oil at `temperature` [K], by a central difference."""
     step = 0.01
     low, high = (float(case.lubricant.viscosity(temperature + s)) for s in (-step, step))
@@ -108,7 +108,7 @@ def derived_numbers(case: Case, speed: float) -> DerivedNumbers:
         reynolds_number=reynolds,
         taylor_number=reynolds * slimness,
         peclet_number=rho_cp * u * clearance**2 / (k * radius),
-        nahme_number=temperature_coefficient(case, temperature) * mu * u**2 / k,
+        nahme_number=_temperature_coefficient(case, temperature) * mu * u**2 / k,
         adiabatic_temperature_rise=rise,
         warm_temperature=warm,
         warm_viscosity=warm_mu,

@@ -378,7 +378,7 @@ def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
         if guess.imag < 0.0:
             continue
         with suppress(ArithmeticError):
-            root = refine_eigenvalue(law, guess, known=found)
+            root = _refine_eigenvalue(law, guess, known=found)
             real = abs(root.imag) <= 1e-9 * abs(root)
             found += [complex(root.real)] if real else [root, root.conjugate()]
     if not found:
@@ -386,7 +386,7 @@ def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
     return np.array(found)
 
 
-def refine_eigenvalue(
+def _refine_eigenvalue(
     law: Callable[[complex], ComplexArray], guess: complex, *, known: Sequence[complex] = ()
 ) -> complex:
     """Return s near `guess` at which the matrix `law(s)` is singular, other than those `known`.

@@ -81,8 +81,7 @@ def control(
     study = study_control(_case(loaded, clearance, model), at, _mass(loaded, mass), wishes)
     document = _study_document(study)
     if folder is not None:
-        from ..show.job import save_figures
-        from ..show.stability_figures import control_figures
+        from ..show.job import control_figures, save_figures
 
         document["files"] = save_figures(control_figures(study, loaded.title), folder)
     output.document(document)

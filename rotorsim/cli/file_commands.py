@@ -24,7 +24,7 @@ class _Profile(StrEnum):
     TILTING_PAD = "tilting_pad"
 
 
-class ExportFormat(StrEnum):
+class _ExportFormat(StrEnum):
     """Formats that `export` can write; `rotorsim.files.FORMATS` says how."""
 
     ROSS = "ross"
@@ -47,22 +47,22 @@ _OTHER_SUFFIXES = {*(f".{end}" for end in ("md", "yaml", "yml", "ini", "cfg", "x
 """Endings that mean another kind of file (a name may hold dots: "pump 1.2")."""
 
 
-def shipped_names(incomplete: str) -> list[str]:
+def _shipped_names(incomplete: str) -> list[str]:
     """Shipped scenarios whose names begin so, for the shell's completion."""
     return [name for name in shipped_scenarios() if name.startswith(incomplete)]
 
 
-def _export_formats(text: str) -> list[ExportFormat]:
+def _export_formats(text: str) -> list[_ExportFormat]:
     """Formats from words between commas, each once."""
     words = [word.strip().lower() for word in text.split(",")]
-    known = ", ".join(ExportFormat)
-    if not all(word in set(ExportFormat) for word in words):
+    known = ", ".join(_ExportFormat)
+    if not all(word in set(_ExportFormat) for word in words):
         raise InputError(f"must be some of {known}, with commas between", key="--to", value=text)
-    return [ExportFormat(word) for word in dict.fromkeys(words)]
+    return [_ExportFormat(word) for word in dict.fromkeys(words)]
 
 
-def load_directions(
-    text: str | None, table: Path, kinds: list[ExportFormat]
+def _load_directions(
+    text: str | None, table: Path, kinds: list[_ExportFormat]
 ) -> tuple[float | None, float | None]:
     """``--load-direction`` [rad] for reading `table` and for writing: whichever is ROSS's."""
     if text is None:
@@ -71,7 +71,7 @@ def load_directions(
 
     angle = parse_quantity(text, "angle", key="--load-direction", example="-90 deg")
     reads = table.suffix.lower() in (".toml", ".json")
-    writes = not {ExportFormat.ROSS, ExportFormat.ROSS2}.isdisjoint(kinds)
+    writes = not {_ExportFormat.ROSS, _ExportFormat.ROSS2}.isdisjoint(kinds)
     if not reads and not writes:
         message = "has no use: only the frame of ROSS is turned; give ross to --to"
         raise InputError(message, key="--load-direction", value=text)
@@ -105,7 +105,7 @@ def new(
             "NAME",
             "Start from a shipped scenario instead, e.g. dal.",
             True,
-            autocompletion=shipped_names,
+            autocompletion=_shipped_names,
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
@@ -168,7 +168,7 @@ def _new_text(
         if eccentricity is None
         else ("eccentricity", eccentricity)
     )
-    return scenario_text(title, profile.value, target, 32.0 if iso_vg is None else iso_vg)
+    return _scenario_text(title, profile.value, target, 32.0 if iso_vg is None else iso_vg)
 
 
 def _shipped_text(name: str) -> str:
@@ -209,7 +209,7 @@ def export(
     from ..files.formats import FORMATS, write_table
 
     kinds = _export_formats(to)
-    read_at, written_at = load_directions(load_direction, table, kinds)
+    read_at, written_at = _load_directions(load_direction, table, kinds)
     loaded = given_table(output, table, bearing, read_at)
     name = table.stem.removesuffix(".ross").removesuffix(".ross2")
     where = folder or table.parent
@@ -362,7 +362,7 @@ initial_displacement = ["1 um", "0 um"]
 """
 
 
-def scenario_text(title: str, profile: str, target: tuple[str, str | float], iso_vg: float) -> str:
+def _scenario_text(title: str, profile: str, target: tuple[str, str | float], iso_vg: float) -> str:
     """TOML text of a new scenario.
 
     profile : ``plain``, ``grooved``, ``elliptical`` or ``tilting_pad``.

@@ -135,7 +135,7 @@ def solve(
             output.show(*(point_table(point) for point in points))
         else:
             output.show(loaded.title, *points_tables(points))
-    return report_points(output, points)
+    return _report_points(output, points)
 
 
 def table(
@@ -163,7 +163,7 @@ def table(
     )
     said = ", ".join(f"{count} {status}" for status, count in counts.items())
     output.show(f"{len(points)} points ({said}) in {path}")
-    return report_points(output, points)
+    return _report_points(output, points)
 
 
 def computed_table(
@@ -178,8 +178,7 @@ def computed_table(
     While points have failed the journal stays, to be resumed from, and so does an older table
     without such points.
     """
-    from ..study.journal import Journal
-    from ..study.sweep import as_table, sweep_points
+    from ..study.sweep import Journal, as_table, sweep_points
     from .output import film_progress
 
     check_workers(workers)
@@ -230,7 +229,7 @@ def _is_without_failures(path: Path) -> bool:
     return not (status == str(SolveStatus.FAILED)).any()
 
 
-def report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
+def _report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     """Say what did not converge and what left the model's range; the exit code."""
     from ..bearing.description import grouped_warnings, point_title
 
@@ -280,7 +279,7 @@ def run(
         from .tables import closing
 
         output.show(*closing(said, results.curves))
-    code = report_points(output, points)
+    code = _report_points(output, points)
     for problem in problems:
         output.complain(problem)
     return INCOMPLETE if problems else code
@@ -323,7 +322,7 @@ def report(
     path = write_report(results, page)
     output.document({"report": path, "table": table, "problems": results.problems})
     output.show(f"{path} is written; open it in a browser")
-    code = report_points(output, points)
+    code = _report_points(output, points)
     for problem in results.problems:
         output.complain(problem)
     return INCOMPLETE if results.problems else code

@@ -126,7 +126,7 @@ def _coefficients(
 ) -> CoefficientTable | None:
     """Table for linear coefficients; a nonlinear film needs none."""
     from ..model.orbit import OrbitForce
-    from ..study.provenance import differences
+    from ..study.inputs import differences
 
     if loaded.orbit is not None and loaded.orbit.force is not OrbitForce.LINEAR:
         if table is not None:

@@ -289,7 +289,7 @@ class _Work:
     @property
     def mesh_size(self) -> MeshSize | None:
         """In place of the scenario's."""
-        from ..study.axes import COARSE
+        from ..study.planes import COARSE
 
         return COARSE if self.mesh is _Mesh.COARSE else None
 
@@ -323,7 +323,7 @@ def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[flo
 def _show_map(
     work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
 ) -> int:
-    from ..show.stability_figures import plane_figures
+    from ..show.job import plane_figures
     from .stability_results import plane_document, plane_table
 
     plane, title = _plane(work, source, axes, held)
@@ -382,7 +382,7 @@ def _show_tolerances(
     texts: list[str] | None,
     samples: int | None,
 ) -> int:
-    from ..show.stability_figures import tolerance_figures
+    from ..show.job import tolerance_figures
     from ..study.tolerances import study_tolerances
     from .stability_results import study_document, study_tables
 
@@ -402,7 +402,7 @@ def _show_tolerances(
         study = study_tolerances(
             scenario,
             _wanted_tolerances(scenario, texts, samples),
-            rotor=wanted_rotor(scenario, *rotor_texts),
+            rotor=_wanted_rotor(scenario, *rotor_texts),
             operating_speed=held.get("speed"),
             radial_clearance=held.get("radial_clearance"),
             thermal_model=work.model,
@@ -441,7 +441,7 @@ def _sample_progress(output: Output) -> Iterator[Callable[[int, int], None] | No
 
 def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> int:
     from ..bearing.doubts import doubts
-    from ..show.stability_figures import campbell_figures
+    from ..show.job import campbell_figures
     from ..study.stability import campbell_curves, stability_curves
     from .stability_results import branches_table, curve_row, modes_table, threshold_table
     from .tables import curve_table, summary_table
@@ -449,7 +449,7 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
     output = work.output
     scenario, stored = _source(work, source)
     # Before films are solved: what is wrong with the rotor is said at once.
-    rotor = wanted_rotor(scenario, *rotor_texts)
+    rotor = _wanted_rotor(scenario, *rotor_texts)
     table = _solved(work, source, scenario) if stored is None else stored
     table = table if work.model is None else table.select(thermal_model=work.model)
     curves = stability_curves(table, rotor)
@@ -564,7 +564,7 @@ def _held_values(texts: Mapping[_Axis, str | None]) -> dict[str, float]:
     return {name: value for name, value in found.items() if value is not None}
 
 
-def wanted_rotor(
+def _wanted_rotor(
     scenario: Scenario | None,
     mass: float | None,
     shaft_stiffness: str | None,

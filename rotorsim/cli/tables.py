@@ -252,8 +252,8 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
     points = f": {sum(said['counts'].values())} film points, {counts}"
     yield Text.assemble("\n", (said["title"], "bold"), points)
     if said["heating"]:
-        yield heating_table(said["heating"], rigid=not curves or not _flexible(curves[0]))
-        lines = "\n".join(walls_lines(said["heating"]))
+        yield _heating_table(said["heating"], rigid=not curves or not _flexible(curves[0]))
+        lines = "\n".join(_walls_lines(said["heating"]))
         if lines:
             yield lines
     if curves:
@@ -273,7 +273,7 @@ def _flexible(curve: StabilityCurve) -> bool:
     return bool(curve.rotor) and curve.mass is None
 
 
-def heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> Table:
+def _heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> Table:
     """Isothermal and THD at the highest speed, with what heating changes.
 
     Beside a rotor that is not rigid no critical mass is shown.
@@ -297,7 +297,7 @@ def heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> T
     return table
 
 
-def walls_lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+def _walls_lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     """What leaves through bush and shaft instead of with the oil, where that is anything."""
     for row in rows:
         for model in _models(row):

@@ -6,17 +6,22 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..arguments import file_path
-from ..atomic import write_text
+from ..atomic import replacing, write_text
 from ..bearing.table import CoefficientTable
-from ..bearing.table_data import COEFFICIENTS, CONVENTIONS
+from ..bearing.table_data import ATTRIBUTES, COEFFICIENTS, CONVENTIONS, SCALARS
 from ..errors import TableError
 from ..file_kinds import SUFFIXES, FileKind, is_missing, kind_of, sentence
-from . import matlab, ross
-from .curves import RPM, Curve, curves
+from . import ross
+from .ross import RPM, Curve, curves
+
+if TYPE_CHECKING:
+    from ..bearing.table import CoefficientTable
+
 
 _WIDTH = 16
 
@@ -101,7 +106,7 @@ def write_table(
         ]
     path = where / f"{name}.{FORMATS[kind]}"
     if kind == "mat":
-        return [matlab.write(table, path)]
+        return [_write_matlab(table, path)]
     return [table.to_csv(path) if kind == "csv" else table.save(path)]
 
 
@@ -157,3 +162,49 @@ def _check_kind(source: Path, suffix: str) -> None:
         "" if suffix == SUFFIXES.get(kind, suffix) else f"; its name must end in {SUFFIXES[kind]}"
     )
     raise TableError(f"{sentence(kind)}{renamed}; here a table is needed", source=source)
+
+
+def _write_matlab(table: CoefficientTable, path: Path) -> Path:
+    """Write everything: ``K(:,:,i,j,k)`` and ``C`` are 2 x 2 matrices.
+
+    The indices after the first two are speed, clearance (and any further dimension), thermal model:
+    the dimensions of the table, last to first. ``dimensions`` in the file lists them.
+    """
+    from scipy.io import savemat
+
+    dataset = table.dataset
+    order = [str(name) for name in dataset["kxx"].dims][::-1]
+    contents: dict[str, Any] = {
+        "conventions": "\n".join(CONVENTIONS),
+        "title": str(dataset.attrs.get("title", "")),
+        "dimensions": _cells(order),
+        "K": _matrices(table.stiffness),
+        "C": _matrices(table.damping),
+        "status": _cells(dataset["status"].values.T),
+    }
+    for name in order:
+        values = dataset[name].values
+        contents[name] = values.astype(float) if values.dtype.kind in "fi" else _cells(values)
+    scalars = [n for n in SCALARS if n in dataset.data_vars]
+    contents |= {name: np.asarray(dataset[name].values, dtype=float).T for name in scalars}
+    contents["units"] = {n: ATTRIBUTES[n][0] for n in [*order, *scalars] if n in ATTRIBUTES} | {
+        letter: ATTRIBUTES[f"{letter.lower()}xx"][0] for letter in "KC"
+    }
+    contents["coefficient_names"] = _cells(COEFFICIENTS)
+    with replacing(path) as temporary, temporary.open("wb") as stream:
+        savemat(stream, contents, oned_as="row")
+    return path
+
+
+def _matrices(values: np.ndarray) -> np.ndarray:
+    """From (..., speed, 2, 2) to (2, 2, speed, ...)."""
+    return np.moveaxis(values, (-2, -1), (0, 1)).transpose(0, 1, *range(values.ndim - 1, 1, -1))
+
+
+def _cells(texts: Any) -> np.ndarray:
+    """Cell array of texts."""
+    source = np.asarray(texts, dtype=object)
+    cells = np.empty(source.shape, dtype=object)
+    for index in np.ndindex(source.shape):
+        cells[index] = str(source[index])
+    return cells

@@ -14,7 +14,10 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,10 +31,12 @@ from ..bearing.table_data import COEFFICIENTS, LARGEST, SIGNS
 from ..errors import InputError, TableError
 from ..file_kinds import read_bytes
 from ..units import parse_quantity
-from .curves import Curve
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from ..bearing.table import CoefficientTable
+
 
 _WEIGHT = -0.5 * math.pi
 """Direction of the weight in the frame of ROSS [rad]: along -y."""
@@ -87,7 +92,7 @@ def _in_degrees(load_direction: float) -> float:
     return round(math.remainder(math.degrees(load_direction), 360.0), 10)
 
 
-def to_ross(matrices: NDArray[np.float64], load_direction: float = _WEIGHT) -> NDArray[np.float64]:
+def _to_ross(matrices: NDArray[np.float64], load_direction: float = _WEIGHT) -> NDArray[np.float64]:
     """Turn (..., 2, 2) matrices from the load frame to the frame of ROSS.
 
     matrices : (..., 2, 2) array. Stiffness or damping.
@@ -95,17 +100,17 @@ def to_ross(matrices: NDArray[np.float64], load_direction: float = _WEIGHT) -> N
 
     Examples
     --------
-    >>> to_ross(np.array([[1.0, 2.0], [3.0, 4.0]])).tolist()
+    >>> _to_ross(np.array([[1.0, 2.0], [3.0, 4.0]])).tolist()
     [[4.0, -3.0], [-2.0, 1.0]]
     """
     turn = _turn(load_direction)
     return turn @ matrices @ turn.T
 
 
-def from_ross(
+def _from_ross(
     matrices: NDArray[np.float64], load_direction: float = _WEIGHT
 ) -> NDArray[np.float64]:
-    """Inverse of `to_ross`."""
+    """Inverse of `_to_ross`."""
     turn = _turn(load_direction)
     return turn.T @ matrices @ turn
 
@@ -155,8 +160,8 @@ def write(curve: Curve, path: Path, load_direction: float = _WEIGHT, *, version:
     ]
     stem = path.stem.removesuffix(".ross").removesuffix(".ross2")
     tag = "".join(letter for letter in stem if letter.isprintable())
-    stiffness = to_ross(curve.stiffness, load_direction).reshape(-1, 4)
-    damping = to_ross(curve.damping, load_direction).reshape(-1, 4)
+    stiffness = _to_ross(curve.stiffness, load_direction).reshape(-1, 4)
+    damping = _to_ross(curve.damping, load_direction).reshape(-1, 4)
     lines = [f"# {line}" for fact in head for line in fact.splitlines()]
     # The dots and quotes a name may hold would end a bare key.
     lines += ["", f"[{json.dumps('BearingElement_' + tag)}]", "n = 0", f"tag = {json.dumps(tag)}"]
@@ -324,7 +329,7 @@ def _table(
                 source=source, key=name, value=float(column[column != 0.0][0]),
             )  # fmt: skip
     values = np.stack(np.broadcast_arrays(*columns[:8], speeds)[:8], axis=-1)
-    turned = from_ross(values.reshape(1, 1, -1, 2, 2, 2), load_direction).reshape(1, 1, -1, 8)
+    turned = _from_ross(values.reshape(1, 1, -1, 2, 2, 2), load_direction).reshape(1, 1, -1, 8)
     variables: dict[str, Any] = {n: turned[..., i] for i, n in enumerate(COEFFICIENTS)}
     variables["status"] = np.full(turned.shape[:-1], "converged", dtype=object)
     coordinates = {"thermal_model": ["given"], "radial_clearance": [np.nan], "speed": speeds}
@@ -368,3 +373,79 @@ def _column(
                 f"must be finite numbers, at most {LARGEST:g}", source=source, key=name
             )
     return np.array(numbers, dtype=float)
+
+
+RPM = 30.0 / np.pi
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Converged coefficients of one bearing over speed (SI, load frame).
+
+    name : For a file's name: what tells this curve from the others of its table; empty if it is
+        alone.
+    facts : The same in words, for the file's head.
+    speed : (n,) array [rad/s]
+    stiffness, damping : (n, 2, 2) arrays [N/m], [N s/m]
+    constant : They hold at any speed.
+    """
+
+    name: str
+    facts: tuple[str, ...]
+    speed: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    constant: bool = False
+
+
+def curves(table: CoefficientTable) -> Iterator[Curve]:
+    """Every curve of `table` that has a converged point.
+
+    Raises TableError: No point of the table converged.
+    """
+    values = {name: table.dataset[name].values for name in table.choices}
+    title = str(table.dataset.attrs.get("title", ""))
+    found = False
+    for index in np.ndindex(table.converged.shape[:-1]):
+        usable = table.converged[index]
+        if not usable.any():
+            continue
+        found = True
+        chosen = {n: column[i] for (n, column), i in zip(values.items(), index, strict=True)}
+        left_out = table.speeds[~usable] * RPM
+        facts = [title] if title else []
+        facts += [_words(name, value) for name, value in chosen.items() if _known(value)]
+        if table.constant:
+            facts.append("Constant: the same at any speed")
+        if left_out.size:
+            facts.append(
+                "Left out, not converged, rpm: " + ", ".join(f"{rpm:.6g}" for rpm in left_out)
+            )
+        yield Curve(
+            name="_".join(_short(n, v) for n, v in chosen.items() if len(values[n]) > 1),
+            facts=tuple(facts),
+            speed=table.speeds[usable],
+            stiffness=table.stiffness[index][usable],
+            damping=table.damping[index][usable],
+            constant=table.constant,
+        )
+    if not found:
+        raise TableError("no point of the table converged: nothing to write", key="status")
+
+
+def _known(value: Any) -> bool:
+    return isinstance(value, str) or bool(np.isfinite(value))
+
+
+def _words(name: str, value: Any) -> str:
+    if name == "radial_clearance":
+        return f"radial clearance {float(value) * 1e6:.6g} µm"
+    shown = value if isinstance(value, str) else f"{float(value):.6g}"
+    return f"{name.replace('_', ' ')} {shown}"
+
+
+def _short(name: str, value: Any) -> str:
+    if name == "radial_clearance":
+        return f"{float(value) * 1e6:.6g}um"
+    shown = str(value) if isinstance(value, str) else f"{name}{float(value):.6g}"
+    return re.sub(r"[^A-Za-z0-9.]+", "-", shown)

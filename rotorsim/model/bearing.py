@@ -131,7 +131,7 @@ class Arc:
         return self.start + self.offset * (self.end - self.start)
 
 
-def profile_arcs(profile: BearingProfile, preload: float, offset: float | None) -> tuple[Arc, ...]:
+def _profile_arcs(profile: BearingProfile, preload: float, offset: float | None) -> tuple[Arc, ...]:
     """Return the arcs of a usual bore, angles from the load line.
 
     Two lobes are centred on the load line and opposite it, the split at 90 and 270 deg; three lobes
@@ -223,7 +223,7 @@ class Bearing:
             raise InputError(
                 "is missing; a profile needs it, for example preload = 0.5", key="bearing.preload"
             )
-        arcs = profile_arcs(self.profile, self.preload, self.offset)
+        arcs = _profile_arcs(self.profile, self.preload, self.offset)
         _require(
             self.arcs in ((), arcs), "either a profile or [[bearing.arc]] tables, not both",
             "bearing.profile", str(self.profile),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,18 +11,19 @@ from numpy.typing import NDArray
 
 from ..bearing.interpolation import Coefficients
 from ..bearing.whirl import WhirlThreshold, rigid_threshold
+from ..errors import InputError
 from ..machine.actuator import ActuatedForce
 from ..model import Case
 from ..model.orbit import ActuatorSettings, Design
-from .actuators import design_feedback
 
 if TYPE_CHECKING:
     import control
 
     from ..machine.control import LoopMargins, StateFeedback
-    from ..orbit import Orbit
+    from ..orbit import Orbit, OrbitProblem
     from ..orbit.film_force import LoadedFilm
     from ..orbit.forces import BearingForce
+
 
 Array = NDArray[np.float64]
 
@@ -125,7 +126,7 @@ def study_control(
         displacement_scale=wishes.displacement_scale,
         decay_ratio=None if wishes.growth_rate is None else -wishes.growth_rate / speed,
     )
-    feedback = design_feedback(settings, linear, mass, clearance, film.load)
+    feedback = _design_feedback(settings, linear, mass, clearance, film.load)
     disturbance = wishes.disturbance or 0.02 * clearance
     orbits: list[Orbit | None] = [None, None]
     largest = None
@@ -184,3 +185,65 @@ def _run(
 def _sorted(values: NDArray) -> NDArray[np.complex128]:
     found = np.asarray(values, dtype=complex)
     return found[np.argsort(np.real(-found), kind="stable")]
+
+
+def _design_feedback(
+    settings: ActuatorSettings,
+    linear: Coefficients,
+    mass: float,
+    radial_clearance: float,
+    load: float | None,
+) -> StateFeedback:
+    """Feedback for a rigid rotor [kg] on its linearised film, at the coefficients' speed.
+
+    mass, radial_clearance : Per bearing [kg], [m].
+    load : The static one [N]: a tenth of it is the force that counts as large where none is given.
+    Raises InputError: The design reaches its aim with no gain, or nothing says which force is
+        large.
+    """
+    from ..machine.control import design_lqr, design_pd, proportional_derivative
+    from ..machine.statespace import state_space
+
+    limit = settings.force_limit
+    if settings.design is Design.LQR:
+        large = settings.force_scale or (limit if math.isfinite(limit) else 0.1 * (load or 0.0))
+        if not large > 0.0:
+            raise InputError("is missing: the load is not known", key="orbit.actuator.force_scale")
+        scale = settings.displacement_scale or 0.01 * radial_clearance
+        return design_lqr(state_space(linear, mass), scale, large, max_force=limit)
+    if settings.damping is not None:
+        return proportional_derivative(settings.stiffness, settings.damping, limit)
+    ratio = 0.02 if settings.decay_ratio is None else settings.decay_ratio
+    return design_pd(linear, mass, -ratio * linear.speed, settings.stiffness, limit)
+
+
+def with_actuator(
+    problem: OrbitProblem, settings: ActuatorSettings, mass: float, load: float | None
+) -> OrbitProblem:
+    """The problem with an actuator beside its film, at constant speed.
+
+    Raises InputError: The speed changes, or as `_design_feedback`.
+    """
+    from ..machine.actuator import ActuatedForce
+    from ..orbit import LinearForce
+    from ..orbit.forces import find_equilibrium, linearize_force
+
+    if not problem.schedule.is_constant:
+        raise InputError("needs one speed, not a ramp", key="orbit.actuator")
+    film, speed = problem.force, problem.schedule.speeds[0]
+    if isinstance(film, LinearForce):
+        rest = film.position(speed)
+    else:
+        rest = find_equilibrium(film, problem.static_load, speed)
+    linear = Coefficients(*linearize_force(film, *rest, speed), speed)
+    feedback = _design_feedback(settings, linear, mass, film.radial_clearance, load)
+    limit = settings.force_limit
+    limited = f"limited to {limit:g} N per axis" if math.isfinite(limit) else "without limit"
+    return replace(
+        problem,
+        force=ActuatedForce(film, feedback, rest),
+        equilibrium=rest,
+        # as accurate as with the film alone
+        relative_tolerance=problem.tolerance,
+        note="; ".join(filter(None, (problem.note, f"{settings.design.name} actuator {limited}"))),
+    )

@@ -2,25 +2,39 @@
 
 from __future__ import annotations
 
+import dataclasses
+import itertools
+import math
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..model import LoadTarget, MeshSize
+from ..model import (
+    Bearing,
+    Case,
+    ExponentialViscosity,
+    LoadTarget,
+    Lubricant,
+    MeshSize,
+    ThermalModel,
+    WaltherViscosity,
+)
 from ..rows import QUANTITIES
-from .axes import tabulate_over
 
 if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
     import xarray as xr
 
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
     from .sweep import Progress
+
 
 Array = NDArray[np.float64]
 
@@ -104,7 +118,7 @@ def plane_of_scenario(
     executor, workers, progress : As for `rotorsim.tabulate`.
     Raises InputError: Axes alike or unknown, or something left open.
     """
-    _check_axes(x, y, held)
+    _check_plane(x, y, held)
     given = {**(values or {}), **{name: [value] for name, value in (held or {}).items()}}
     axes = {
         name: _film_values(scenario, name, given.get(name), on_axis=name in (x, y))
@@ -143,7 +157,7 @@ def plane_of_table(
     """
     from ..machine.map import stability_map
 
-    _check_axes(x, y, held)
+    _check_plane(x, y, held)
     for name in (x, y):
         if name not in ("speed", "mass") and name not in table.choices:
             raise InputError(
@@ -186,7 +200,7 @@ def plane_of_table(
     return Plane(x, y, kept, dataset, size, failed)
 
 
-def _check_axes(x: str, y: str, held: Mapping[str, float] | None) -> None:
+def _check_plane(x: str, y: str, held: Mapping[str, float] | None) -> None:
     for key, name in (("x", x), ("y", y)):
         if name not in _DIMENSIONS:
             raise InputError(f"must be one of {', '.join(_DIMENSIONS)}", key=key, value=name)
@@ -258,3 +272,144 @@ def _median_critical_mass(table: CoefficientTable) -> float:
 def _spread(values: Array, cells: int) -> Array:
     """`cells` values from the first to the last."""
     return np.linspace(float(values[0]), float(values[-1]), cells)
+
+
+_UNITS = {"applied_load": "N", "supply_temperature": "K"}
+"""Dimensions that a table gets beside its own, and their units."""
+
+COARSE = MeshSize(circumferential=48, axial=12, cross_film=8, bush_radial=8)
+"""Mesh for many solutions in a short time: critical masses within some per cent."""
+
+_VISCOSITY_LIMITS = (1e-7, 1e5)
+
+
+def _with_supply_temperature(case: Case, temperature: float) -> Case:
+    """`case` with all oil, that of the grooves included, supplied at `temperature` [K]."""
+    viscosity = float(case.lubricant.viscosity(temperature))
+    low, high = _VISCOSITY_LIMITS
+    if not (math.isfinite(viscosity) and low <= viscosity <= high):
+        raise InputError(
+            f"gives the oil a viscosity of {viscosity:.3g} Pa*s",
+            key="supply_temperature",
+            value=temperature,
+        )
+    grooves = tuple(
+        dataclasses.replace(groove, supply_temperature=None) for groove in case.bearing.grooves
+    )
+    bearing: Bearing = dataclasses.replace(case.bearing, grooves=grooves)
+    thermal = dataclasses.replace(case.thermal, supply_temperature=temperature)
+    return dataclasses.replace(case, bearing=bearing, thermal=thermal)
+
+
+def _with_viscosity(case: Case, factor: float) -> Case:
+    """`case` with an oil that is `factor` as viscous at every temperature."""
+    if not (math.isfinite(factor) and factor > 0.0):
+        raise InputError("must be above 0", key="viscosity", value=factor)
+    oil: Lubricant = case.lubricant
+    law = oil.law
+    if isinstance(law, ExponentialViscosity):
+        law = dataclasses.replace(law, reference_viscosity=law.reference_viscosity * factor)
+    elif isinstance(law, WaltherViscosity):
+        # The law's density does nothing but turn kinematic into dynamic viscosity.
+        law = dataclasses.replace(law, density=law.density * factor)
+    else:
+        raise InputError("this oil's law cannot be scaled", key="viscosity")
+    return dataclasses.replace(case, lubricant=dataclasses.replace(oil, law=law))
+
+
+def with_mesh(scenario: Scenario, mesh: MeshSize) -> Scenario:
+    """`scenario` on another mesh."""
+    return dataclasses.replace(scenario, film=dataclasses.replace(scenario.film, mesh=mesh))
+
+
+def changed(case: Case, values: Mapping[str, float]) -> Case:
+    """Return `case` with some of its inputs replaced.
+
+    values : ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K],
+        ``viscosity`` (a factor).
+    """
+    for name, value in values.items():
+        match name:
+            case "radial_clearance":
+                bearing = dataclasses.replace(case.bearing, radial_clearance=value)
+                case = dataclasses.replace(case, bearing=bearing)
+            case "applied_load":
+                case = dataclasses.replace(case, target=LoadTarget(value))
+            case "supply_temperature":
+                case = _with_supply_temperature(case, value)
+            case "viscosity":
+                case = _with_viscosity(case, value)
+            case _:
+                allowed = "radial_clearance, applied_load, supply_temperature, viscosity"
+                raise InputError(f"must be one of {allowed}", key=name)
+    return case
+
+
+def tabulate_over(
+    scenario: Scenario,
+    axes: Mapping[str, Sequence[float]],
+    speeds: Sequence[float] | None = None,
+    *,
+    thermal_models: Sequence[ThermalModel | str] | None = None,
+    mesh: MeshSize | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> CoefficientTable:
+    """Solve the film over clearance, load and supply temperature as well as speed.
+
+    axes : ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K]: ascending
+        values. What is missing keeps the scenario's.
+    speeds : [rad/s]; the scenario's by default.
+    thermal_models : The scenario's by default.
+    mesh : In place of the scenario's.
+    executor, workers, progress : As for `rotorsim.tabulate`.
+    Returns: With ``applied_load`` and ``supply_temperature`` as further dimensions where given.
+    Raises InputError: Unknown axis, values that do not ascend, a temperature at which the oil's law
+        means nothing.
+    """
+    from ..bearing.table import CoefficientTable
+    from .sweep import as_table, sweep_points
+
+    _check_axes(axes)
+    scenario = scenario if mesh is None else with_mesh(scenario, mesh)
+    models = list(thermal_models or scenario.thermal_models)
+    clearances = axes.get("radial_clearance", scenario.radial_clearances)
+    extra = [name for name in _UNITS if name in axes]
+    places = list(itertools.product(*(axes[name] for name in extra)))
+    cases = []
+    for place in places:
+        for model, clearance in itertools.product(models, clearances):
+            case = scenario.case(scenario.radial_clearances[0], model)
+            given = {"radial_clearance": clearance, **dict(zip(extra, place, strict=True))}
+            cases.append(changed(case, given))
+    wanted = [float(s) for s in (scenario.speeds if speeds is None else speeds)]
+    points = sweep_points(cases, wanted, executor=executor, workers=workers, progress=progress)
+    size = len(points) // len(places)
+    tables = {
+        place: as_table(points[first * size : (first + 1) * size], scenario)
+        for first, place in enumerate(places)
+    }
+    for name in reversed(extra):
+        tables = {
+            place: CoefficientTable.stack(
+                [tables[*place, value] for value in axes[name]],
+                name,
+                list(axes[name]),
+                _UNITS[name],
+            )
+            for place in dict.fromkeys(key[:-1] for key in tables)
+        }
+    (table,) = tables.values()
+    return table
+
+
+def _check_axes(axes: Mapping[str, Sequence[float]]) -> None:
+    allowed: dict[str, Any] = {"radial_clearance": None, **_UNITS}
+    for name, values in axes.items():
+        if name not in allowed:
+            raise InputError(f"must be one of {', '.join(allowed)}", key=name)
+        if not len(values) or any(not (math.isfinite(v) and v > 0.0) for v in values):
+            raise InputError("must be one or more numbers above 0", key=name, value=list(values))
+        if any(after <= before for before, after in itertools.pairwise(values)):
+            raise InputError("must ascend", key=name, value=list(values))

@@ -2,34 +2,53 @@
 
 from __future__ import annotations
 
+import functools
+import hashlib
+import json
+import multiprocessing
 import os
-from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
+import signal
+import socket
+import sys
+import threading
+import warnings
+from collections import deque
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
     CancelledError,
     Executor,
     Future,
+    ProcessPoolExecutor,
     wait,
 )
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass, replace
+from multiprocessing.connection import Connection
+from multiprocessing.connection import wait as wait_for_any
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arguments import refuse_path
-from ..bearing.operating_point import OperatingPoint, failed_point
+from ..atomic import write_text
+from ..bearing.operating_point import OperatingPoint, failed_point, point_from_dict, point_to_dict
 from ..errors import InputError
+from ..file_kinds import is_missing, read_bytes
 from ..model import Case
-from .journal import Journal, model_digest, refuse_other_sources
+from ..status import SolveStatus
 
 if TYPE_CHECKING:
+    from ..bearing.operating_point import OperatingPoint
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
 
+    Points = tuple[OperatingPoint, ...]
+
 
 @dataclass(frozen=True)
-class Chunk:
+class _Chunk:
     """Consecutive speeds [rad/s] of one case: what one worker does at a time."""
 
     number: int
@@ -40,8 +59,8 @@ class Chunk:
     """`model_digest` of the program that wants the points; empty within one process."""
 
 
-def solve_chunk(
-    chunk: Chunk, solve_case: Callable[..., Any] | None = None
+def _solve_chunk(
+    chunk: _Chunk, solve_case: Callable[..., Any] | None = None
 ) -> tuple[OperatingPoint, ...]:
     """Points of one chunk; this is what travels to the workers.
 
@@ -52,7 +71,7 @@ def solve_chunk(
     return tuple(_along_speed(chunk, solve_case))
 
 
-def _along_speed(chunk: Chunk, solve_case: Callable[..., Any] | None) -> Iterator[OperatingPoint]:
+def _along_speed(chunk: _Chunk, solve_case: Callable[..., Any] | None) -> Iterator[OperatingPoint]:
     """Each speed starts from the last converged one; a failure costs its own point alone."""
     if solve_case is None:
         from ..bearing.solve import solve_case as film_solver
@@ -72,8 +91,8 @@ def _along_speed(chunk: Chunk, solve_case: Callable[..., Any] | None) -> Iterato
         yield point
 
 
-def result_or_failure(
-    future: Future[tuple[OperatingPoint, ...]], chunk: Chunk
+def _result_or_failure(
+    future: Future[tuple[OperatingPoint, ...]], chunk: _Chunk
 ) -> tuple[OperatingPoint, ...]:
     """Points of a finished future; failed ones where its worker was lost."""
     try:
@@ -210,12 +229,12 @@ def _from_journal(
 
 def _chunks(
     cases: Sequence[Case], speeds: Sequence[float], done: Mapping[tuple[int, float], object]
-) -> list[Chunk]:
+) -> list[_Chunk]:
     chunks = []
     for index, case in enumerate(cases):
         missing = [speed for speed in speeds if (index, speed) not in done]
         chunks += [
-            Chunk(index, case, tuple(missing[first : first + CHUNK]))
+            _Chunk(index, case, tuple(missing[first : first + CHUNK]))
             for first in range(0, len(missing), CHUNK)
         ]
     # Heavy cases first: what starts last should be short, or one worker ends alone.
@@ -223,11 +242,11 @@ def _chunks(
 
 
 def _computed(
-    chunks: Sequence[Chunk],
+    chunks: Sequence[_Chunk],
     executor: Executor | None,
     workers: int | None,
     solve_case: Callable[..., Any] | None,
-) -> Generator[tuple[Chunk, tuple[OperatingPoint, ...]], None, None]:
+) -> Generator[tuple[_Chunk, tuple[OperatingPoint, ...]], None, None]:
     """Pairs of (part of) a chunk and its points, as they finish."""
     workers = min(workers or available_cores(), max(len(chunks), 1))
     if executor is not None:
@@ -235,19 +254,17 @@ def _computed(
     elif workers == 1:
         for chunk in chunks:
             for speed, point in zip(chunk.speeds, _along_speed(chunk, solve_case), strict=True):
-                yield Chunk(chunk.number, chunk.case, (speed,)), (point,)
+                yield _Chunk(chunk.number, chunk.case, (speed,)), (point,)
     else:
-        from .processes import on_processes
-
-        yield from on_processes(chunks, workers, solve_case)
+        yield from _on_processes(chunks, workers, solve_case)
 
 
 def _on_executor(
-    chunks: Sequence[Chunk], executor: Executor, solve_case: Callable[..., Any] | None
-) -> Iterator[tuple[Chunk, tuple[OperatingPoint, ...]]]:
+    chunks: Sequence[_Chunk], executor: Executor, solve_case: Callable[..., Any] | None
+) -> Iterator[tuple[_Chunk, tuple[OperatingPoint, ...]]]:
     digest = model_digest()  # elsewhere the program may be another one
     running = {
-        executor.submit(solve_chunk, replace(chunk, model=digest), solve_case): chunk
+        executor.submit(_solve_chunk, replace(chunk, model=digest), solve_case): chunk
         for chunk in chunks
     }
     try:
@@ -255,7 +272,7 @@ def _on_executor(
             finished, _ = wait(running, return_when=FIRST_COMPLETED)
             for future in finished:
                 chunk = running.pop(future)
-                yield chunk, result_or_failure(future, chunk)
+                yield chunk, _result_or_failure(future, chunk)
     finally:
         for future in running:
             future.cancel()
@@ -266,3 +283,289 @@ def available_cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+_FORMAT = 2
+_MAX_BYTES = 2_000_000_000
+_SUM = "sha256"
+"""Key of a line's checksum, over all of its other entries."""
+_MODEL_SOURCES = ("film", "model", "bearing", "compiled.py")
+
+
+class Journal:
+    """Append-only store of finished operating points.
+
+    A line is written whole and flushed to the disk before the next group starts, so that a kill
+    loses what is being computed and nothing else; a line that a kill cut short, or that does not
+    match its checksum, is dropped when the journal is opened again. Points are found by everything
+    that fixes them (the case and the speed), so that a scenario may gain speeds or change its rotor
+    and still reuse them. A journal of another program version is started afresh.
+
+    path : str or Path. Made with the first point.
+    Raises InputError: If `path` is a file of another kind.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path: Path = Path(path)
+        self._whole: str | None = None
+        self._points = self._read()
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    def find(self, case: Case, speed: float) -> OperatingPoint | None:
+        """Return the finished point of `case` at `speed` [rad/s], if there is one."""
+        return self._points.get((_case_digest(case), speed))
+
+    def append(self, case: Case, points: Sequence[OperatingPoint]) -> None:
+        """Add finished `points` of `case`; failed ones are left out, to be tried again."""
+        finished = [point for point in points if point.status is not SolveStatus.FAILED]
+        if not finished:
+            return
+        digest = _case_digest(case)
+        line = {"case": digest, "points": [point_to_dict(point) for point in finished]}
+        if self._whole is not None:
+            # Cuts off what a kill left half written, or the next line would join it.
+            write_text(self.path, self._whole)
+            self._whole = None
+        with self.path.open("a", encoding="utf-8", newline="\n") as stream:
+            stream.write(json.dumps({**line, _SUM: _checksum(line)}) + "\n")
+            stream.flush()
+            os.fsync(stream.fileno())
+        self._points.update({(digest, point.speed): point for point in finished})
+
+    def discard(self) -> None:
+        """Remove the file: its points are kept elsewhere now."""
+        self.path.unlink(missing_ok=True)
+
+    def _read(self) -> dict[tuple[str, float], OperatingPoint]:
+        header = {"rotorsim_journal": _FORMAT, "model": model_digest()}
+        lines = self._lines()
+        if lines and not lines[0].startswith('{"rotorsim_journal"'):
+            raise InputError(
+                "is not a rotorsim sweep journal; choose another name", source=self.path
+            )
+        points: dict[tuple[str, float], OperatingPoint] = {}
+        kept = [json.dumps(header)]
+        if lines and _parse(lines[0]) == header:
+            for line in lines[1:]:
+                group = _points_of(line)
+                if group:
+                    points.update(group)
+                    kept.append(line)
+        self._whole = "\n".join(kept) + "\n"
+        return points
+
+    def _lines(self) -> list[str]:
+        if is_missing(self.path):
+            return []
+        return read_bytes(self.path, _MAX_BYTES).decode("utf-8", errors="replace").splitlines()
+
+
+def _points_of(line: str) -> dict[tuple[str, float], OperatingPoint]:
+    record = _parse(line)
+    if record.pop(_SUM, None) != _checksum(record):
+        return {}
+    try:
+        entries = [point_from_dict(entry) for entry in record["points"]]
+        return {(record["case"], point.speed): point for point in entries}
+    except (KeyError, TypeError, ValueError):
+        return {}
+
+
+def _checksum(record: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(record).encode()).hexdigest()[:24]
+
+
+def _parse(line: str) -> dict[str, Any]:
+    try:
+        record = json.loads(line)
+    except ValueError:
+        return {}
+    return record if isinstance(record, dict) else {}
+
+
+def _case_digest(case: Case) -> str:
+    """Fingerprint of everything in `case`: the model objects print all their values in full."""
+    return hashlib.sha256(repr(case).encode()).hexdigest()[:24]
+
+
+@functools.cache
+def model_digest() -> str:
+    """Fingerprint of the program that computes a point: its source files, read once.
+
+    Stricter than a version number, which a developer forgets to raise.
+    """
+    root = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for name in _MODEL_SOURCES:
+        entry = root / name
+        files = sorted(entry.rglob("*.py")) if entry.is_dir() else [entry]
+        for file in files:
+            digest.update(file.relative_to(root).as_posix().encode())
+            digest.update(file.read_bytes())
+    return digest.hexdigest()[:24]
+
+
+def refuse_other_sources(wanted: str) -> None:
+    """Refuse to compute for a program of another `model_digest`: its numbers might differ.
+
+    Raises InputError: It is another one than this.
+    """
+    if wanted != model_digest():
+        raise InputError(
+            "a worker has other sources of rotorsim than this computer, so its results might "
+            "differ; install the same there and start it anew",
+            key="--scheduler", value=f"{socket.gethostname()}: {model_digest()}",
+        )  # fmt: skip
+
+
+_Item = TypeVar("_Item")
+_Result = TypeVar("_Result")
+_THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+
+
+def _on_processes(
+    chunks: Sequence[_Chunk], workers: int, solve_case: Callable[..., Any] | None
+) -> Iterator[tuple[_Chunk, Points]]:
+    """Points of `chunks` as they finish, computed by `workers` processes.
+
+    A process that dies (out of memory, say) takes the pool with it. What was in work is then done
+    again speed by speed, one process at a time, so that only the point that kills its process is
+    lost; the rest goes on in a new pool.
+    """
+    waiting = deque(chunks)
+    with _one_thread_each():
+        while waiting:
+            running: dict[Future[Points], _Chunk] = {}
+            try:
+                with _pool(workers) as pool:
+                    yield from _drain(pool, waiting, running, workers, solve_case)
+            except BrokenExecutor:
+                for chunk in list(running.values()):
+                    yield from _one_by_one(chunk, solve_case)
+
+
+def map_on_processes(
+    function: Callable[[_Item], _Result],
+    items: Iterable[_Item],
+    workers: int,
+    done: Callable[[int], None] | None = None,
+) -> list[_Result]:
+    """Results of `function` on every item, in their order, computed by `workers` processes.
+
+    function : It and what it returns must be picklable.
+    workers : 1 computes in this process.
+    done : Called with the number of items done.
+    Raises Exception: What `function` raised, and `BrokenExecutor` where a process was lost.
+    """
+    report = done or (lambda _count: None)
+    results: list[_Result] = []
+    if workers == 1:
+        for item in items:
+            results.append(function(item))
+            report(len(results))
+        return results
+    with _one_thread_each(), _pool(workers) as pool:
+        with _anonymous_main():
+            futures = [pool.submit(function, item) for item in items]
+        for future in futures:
+            results.append(future.result())
+            report(len(results))
+    return results
+
+
+def _drain(
+    pool: ProcessPoolExecutor,
+    waiting: deque[_Chunk],
+    running: dict[Future[Points], _Chunk],
+    workers: int,
+    solve_case: Callable[..., Any] | None,
+) -> Iterator[tuple[_Chunk, Points]]:
+    """Keep the pool busy and no more: what it holds when it breaks must be done again."""
+    while waiting or running:
+        while waiting and len(running) < 2 * workers:
+            with _anonymous_main():
+                future = pool.submit(_solve_chunk, waiting[0], solve_case)
+            running[future] = waiting.popleft()
+        finished, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in finished:
+            if isinstance(future.exception(), BrokenExecutor):
+                future.result()  # raises: the pool is lost, and what is running with it
+            chunk = running.pop(future)
+            yield chunk, _result_or_failure(future, chunk)
+
+
+def _one_by_one(
+    chunk: _Chunk, solve_case: Callable[..., Any] | None
+) -> Iterator[tuple[_Chunk, Points]]:
+    for speed in chunk.speeds:
+        single = _Chunk(chunk.number, chunk.case, (speed,))
+        with _pool(1) as pool:
+            with _anonymous_main():
+                future = pool.submit(_solve_chunk, single, solve_case)
+            yield single, _result_or_failure(future, single)
+
+
+@contextmanager
+def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """Start processes that end with the block, at once if it raises, or with this process.
+
+    Each worker holds the reading end of a pipe that nobody writes to: it closes when the block
+    ends, or when this process is killed.
+    """
+    # "spawn" everywhere: forking a process that has threads (BLAS, a viewer) can hang.
+    context = multiprocessing.get_context("spawn")
+    leash, hand = context.Pipe(duplex=False)
+    pool = ProcessPoolExecutor(
+        workers, mp_context=context, initializer=_start_worker, initargs=(leash,)
+    )
+    try:
+        yield pool
+        pool.shutdown(wait=True)
+    finally:
+        hand.close()
+        pool.shutdown(wait=True, cancel_futures=True)
+        leash.close()
+
+
+def _start_worker(leash: Connection) -> None:
+    # The parent decides what an interruption means; the worker would only add a traceback.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Said by the parent already.
+    warnings.filterwarnings("ignore", message="compiled code cannot be kept")
+    threading.Thread(target=_end_with_parent, args=(leash,), daemon=True).start()
+
+
+def _end_with_parent(leash: Connection) -> None:
+    """Without this, the workers of a killed parent would wait for work for ever."""
+    wait_for_any([leash])
+    os._exit(1)
+
+
+@contextmanager
+def _anonymous_main() -> Iterator[None]:
+    """Keep a new worker from running the user's script again.
+
+    A spawned process imports the parent's main module first, which is why multiprocessing wants
+    ``if __name__ == "__main__"`` in every script. The workers need nothing from there: their work
+    is in this package. An empty main module leaves them nothing to import, and starts them faster.
+    """
+    main = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = main
+
+
+@contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Libraries that start threads read their number when a worker loads them: one is enough."""
+    added = [name for name in _THREAD_LIMITS if name not in os.environ]
+    os.environ.update(dict.fromkeys(added, "1"))
+    try:
+        yield
+    finally:
+        for name in added:
+            os.environ.pop(name, None)

@@ -20,8 +20,8 @@ from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..model import Case, LoadTarget, MeshSize
 from ..rotor import Rotor
 from ..rows import RPM
-from .axes import changed, with_mesh
-from .journal import model_digest, refuse_other_sources
+from .planes import changed, with_mesh
+from .sweep import model_digest, refuse_other_sources
 
 if TYPE_CHECKING:
     from ..bearing.interpolation import CoefficientInterpolator
@@ -45,7 +45,7 @@ _BATCH = 4
 
 
 @dataclass(frozen=True)
-class FilmThreshold:
+class _FilmThreshold:
     """From sampled inputs to thresholds, by solving the film: the function that is propagated.
 
     operating_speed : [rad/s]
@@ -133,7 +133,7 @@ class ToleranceStudy:
 
     radial_clearance : Nominal [m].
     operating_speed : [rad/s]
-    nominal : Outputs (see `FilmThreshold`) without any deviation.
+    nominal : Outputs (see `_FilmThreshold`) without any deviation.
     probability_of_instability, standard_error : At the operating speed.
     importance : Rank correlation of each input with the growth rate at the operating speed,
         strongest first.
@@ -200,8 +200,8 @@ def study_tolerances(
     model = thermal_model or ("thd" if "thd" in models else models[0])
     case = scenario.case(radial_clearance, model)
     speed = operating_speed or _operating_speed(scenario)
-    function = FilmThreshold(case, rotor, speed, _search_speeds(scenario, speed))
-    tolerances = tolerances_of(case, settings)
+    function = _FilmThreshold(case, rotor, speed, _search_speeds(scenario, speed))
+    tolerances = _tolerances_of(case, settings)
     try:
         nominal = function({name: t.nominal for name, t in tolerances.items()})
     except SampleError as error:
@@ -229,7 +229,7 @@ def study_tolerances(
     )
 
 
-def tolerances_of(case: Case, settings: ToleranceSettings) -> dict[str, Tolerance]:
+def _tolerances_of(case: Case, settings: ToleranceSettings) -> dict[str, Tolerance]:
     """Distributions about the nominal values of `case`; viscosity as a factor about 1."""
     nominal = {
         "radial_clearance": case.bearing.radial_clearance,
@@ -278,8 +278,7 @@ def _mapper(
     progress: Callable[[int, int], None] | None,
 ) -> Callable:
     """``map`` on the executor, or on this machine's processes, a few samples at a time."""
-    from .processes import map_on_processes
-    from .sweep import available_cores
+    from .sweep import available_cores, map_on_processes
 
     if executor is not None:
         if workers is not None:

@@ -167,10 +167,10 @@ def test_new_suggests_commands_that_can_be_pasted(nonsense, tmp_path):
 
 
 def test_shipped_names_are_completed():
-    from rotorsim.cli.file_commands import shipped_names
+    from rotorsim.cli.file_commands import _shipped_names
 
-    assert shipped_names("orbit_s") == ["orbit_step", "orbit_subcritical"]
-    assert "dal" in shipped_names("")
+    assert _shipped_names("orbit_s") == ["orbit_step", "orbit_subcritical"]
+    assert "dal" in _shipped_names("")
 
 
 def test_a_clearance_is_answered_in_the_unit_of_drawings(nonsense):
@@ -222,7 +222,7 @@ import json, os, random, signal, sys, time
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import ClassVar
-from rotorsim.study.journal import Journal
+from rotorsim.study.sweep import Journal
 from rotorsim.files.scenario import Scenario
 from rotorsim.study.sweep import sweep_points, tabulate
 

@@ -14,7 +14,7 @@ from scipy.io import savemat
 from scipy.sparse import csc_matrix
 
 from rotorsim.errors import InputError
-from rotorsim.files.arrays import read_arrays
+from rotorsim.files.rotors import _read_arrays
 
 CASES = Path(__file__).parents[1] / "data" / "cases"
 GOOD = {
@@ -31,7 +31,7 @@ def test_arrays_come_back_to_the_last_digit(how, tmp_path):
         (np.savez if how == "npz" else np.savez_compressed)(path, **GOOD)
     else:
         savemat(path, {**GOOD, "S": csc_matrix(GOOD["M"])}, do_compression=" " in how)
-    found = read_arrays(path)
+    found = _read_arrays(path)
     for name, value in GOOD.items():
         assert np.array_equal(found[name].reshape(value.shape), value)
     if "mat" in how:
@@ -76,13 +76,13 @@ def test_what_is_no_plain_array_is_refused(contents, message, tmp_path):
     path = tmp_path / "a.npz"
     path.write_bytes(contents)
     with pytest.raises(InputError, match=message) as caught:
-        read_arrays(path)
+        _read_arrays(path)
     assert str(caught.value).startswith(f"{path}: cannot be read: ")
 
 
 @pytest.mark.parametrize("suffix", ["npz", "mat"])
 def test_a_file_that_unpacks_to_more_than_the_limit_is_not_unpacked(suffix, tmp_path, monkeypatch):
-    monkeypatch.setattr("rotorsim.files.arrays._MAX_UNPACKED", 30_000_000)
+    monkeypatch.setattr("rotorsim.files.rotors._MAX_UNPACKED", 30_000_000)
     path = tmp_path / f"bomb.{suffix}"
     if suffix == "npz":
         np.savez_compressed(path, M=np.zeros((2500, 2500)))
@@ -91,7 +91,7 @@ def test_a_file_that_unpacks_to_more_than_the_limit_is_not_unpacked(suffix, tmp_
     assert path.stat().st_size < 100_000
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with pytest.raises(InputError, match=r"(50|3\d) MB or more, at most 30 MB"):
-        read_arrays(path)
+        _read_arrays(path)
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 40_000  # kB
 
 
@@ -99,9 +99,9 @@ def test_a_sparse_matrix_of_any_size_is_not_made_full(tmp_path):
     path = tmp_path / "wide.mat"
     savemat(path, {"M": csc_matrix((1_000_000, 1_000_000))})
     with pytest.raises(InputError, match="MB or more"):
-        read_arrays(path)
+        _read_arrays(path)
 
 
 def test_sparse_indices_are_checked_before_they_are_followed():
     with pytest.raises(InputError, match="lie outside of it"):
-        read_arrays(CASES / "30-robust" / "sparse_index_out_of_bounds.mat")
+        _read_arrays(CASES / "30-robust" / "sparse_index_out_of_bounds.mat")

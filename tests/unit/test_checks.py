@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from rotorsim.bearing.checks import derived_numbers, regime_warnings, temperature_coefficient
+from rotorsim.bearing.checks import _temperature_coefficient, derived_numbers, regime_warnings
 from rotorsim.film.heat import HeatBalance
 from rotorsim.model import (
     Bearing,
@@ -65,8 +65,8 @@ def test_coefficient_of_a_walther_oil() -> None:
     # d/dT of log10 log10(nu + 0.7) = A - B log10 T, by hand.
     nu = float(law.viscosity(temperature)) / 860e-6
     slope = law.slope * (nu + 0.7) * math.log(nu + 0.7) / (temperature * nu)
-    assert temperature_coefficient(case, temperature) == pytest.approx(slope, rel=1e-6)
-    assert temperature_coefficient(CASE, temperature) == pytest.approx(0.034, rel=1e-8)
+    assert _temperature_coefficient(case, temperature) == pytest.approx(slope, rel=1e-6)
+    assert _temperature_coefficient(CASE, temperature) == pytest.approx(0.034, rel=1e-8)
 
 
 def test_the_papers_bearing_is_within_range() -> None:

@@ -21,8 +21,8 @@ from rotorsim.model.tolerances import ToleranceSettings, parse_spread
 from rotorsim.rotor import Rotor
 from rotorsim.show.figures import tolerance_histograms
 from rotorsim.status import SolveStatus
-from rotorsim.study.axes import changed, tabulate_over
-from rotorsim.study.tolerances import FilmThreshold, study_tolerances, tolerances_of
+from rotorsim.study.planes import changed, tabulate_over
+from rotorsim.study.tolerances import _FilmThreshold, _tolerances_of, study_tolerances
 
 HEAD = f'title = "small"\n{BEARING}'
 GROOVE = """\
@@ -193,7 +193,7 @@ def test_films_that_do_not_converge_are_told_apart(monkeypatch, limit):
 def test_thresholds_of_a_sample_are_those_of_its_film():
     scenario = Scenario.from_text(PLAIN)
     case = scenario.case(thermal_model="thd")
-    function = FilmThreshold(case, Rotor.rigid(300.0), 1200.0, (700.0, 1000.0, 1300.0, 1600.0))
+    function = _FilmThreshold(case, Rotor.rigid(300.0), 1200.0, (700.0, 1000.0, 1300.0, 1600.0))
     sample = {
         "radial_clearance": 1.1e-4,
         "viscosity": 0.9,
@@ -210,7 +210,7 @@ def test_thresholds_of_a_sample_are_those_of_its_film():
 def test_spreads_are_read_and_refused():
     scenario = Scenario.from_text(PLAIN + TOLERANCES)
     case = scenario.case(thermal_model="thd")
-    found = tolerances_of(case, scenario.tolerances)
+    found = _tolerances_of(case, scenario.tolerances)
     assert found["load"].kind == "normal"
     assert found["load"].spread == pytest.approx(200.0)
     assert found["viscosity"].nominal == 1.0
@@ -218,7 +218,7 @@ def test_spreads_are_read_and_refused():
     # As --tolerance gives it; the scenario's own check comes before.
     wide = parse_spread({"spread": "30 %", "distribution": "normal"}, "radial_clearance")
     with pytest.raises(InputError, match="below zero"):
-        tolerances_of(case, ToleranceSettings(radial_clearance=wide))
+        _tolerances_of(case, ToleranceSettings(radial_clearance=wide))
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from rotorsim.bearing.table import CoefficientTable
 from rotorsim.bearing.table_data import COEFFICIENTS
 from rotorsim.errors import InputError, TableError
 from rotorsim.files.formats import FORMATS, read_table, write_table
-from rotorsim.files.ross import from_ross, to_ross
+from rotorsim.files.ross import _from_ross, _to_ross
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import modes
 from rotorsim.machine.support import TableSupport
@@ -103,8 +103,8 @@ def test_the_turn_keeps_what_the_bearing_does_to_a_rotor():
     assert np.linalg.det(turn) == 1.0  # no mirror: the sense of rotation stays
     assert turn @ [1.0, 0.0] == pytest.approx([0.0, -1.0])  # the load points down
     force = -stiffness @ displacement
-    assert -to_ross(stiffness) @ (turn @ displacement) == pytest.approx(turn @ force)
-    assert from_ross(to_ross(stiffness)) == pytest.approx(stiffness)
+    assert -_to_ross(stiffness) @ (turn @ displacement) == pytest.approx(turn @ force)
+    assert _from_ross(_to_ross(stiffness)) == pytest.approx(stiffness)
 
 
 def test_more_load_moves_the_journal_down_and_on_with_the_rotation(one, tmp_path):
@@ -274,16 +274,16 @@ def test_only_the_frame_of_ross_is_turned(one, tmp_path):
 
 
 def test_load_direction_goes_to_the_file_of_ross():
-    from rotorsim.cli.file_commands import ExportFormat, load_directions
+    from rotorsim.cli.file_commands import _ExportFormat, _load_directions
 
-    ross, csv = ExportFormat.ROSS, ExportFormat.CSV
-    assert load_directions(None, Path("b.nc"), [csv]) == (None, None)
+    ross, csv = _ExportFormat.ROSS, _ExportFormat.CSV
+    assert _load_directions(None, Path("b.nc"), [csv]) == (None, None)
     eighth = pytest.approx(0.25 * math.pi)
-    assert load_directions("45 deg", Path("b.nc"), [csv, ross]) == (None, eighth)
-    assert load_directions("45 deg", Path("b.json"), [csv]) == (eighth, None)
+    assert _load_directions("45 deg", Path("b.nc"), [csv, ross]) == (None, eighth)
+    assert _load_directions("45 deg", Path("b.json"), [csv]) == (eighth, None)
     for source, kinds in (("b.nc", [csv]), ("b.toml", [csv, ross])):
         with pytest.raises(InputError, match="--load-direction"):
-            load_directions("45 deg", Path(source), kinds)
+            _load_directions("45 deg", Path(source), kinds)
 
 
 def reference() -> tuple[dict, Rotor]:

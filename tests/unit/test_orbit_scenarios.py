@@ -22,7 +22,7 @@ from rotorsim.orbit.force_map import FilmMapForce
 from rotorsim.orbit.integrate import simulate_pieces
 from rotorsim.orbit.orbit import OrbitStatus, concatenate
 from rotorsim.rotor import Rotor
-from rotorsim.study.orbits import orbit_problem, simulate_orbit
+from rotorsim.study.orbits import _orbit_problem, simulate_orbit
 from rotorsim.study.sweep import tabulate
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"
@@ -84,7 +84,7 @@ def test_the_kind_of_a_ramp():
         settings = scenario(f"speed = {ramp}\n").orbit
         assert settings is not None
         assert settings.kind == kind
-        made = orbit_problem(scenario(f'kind = "{kind}"\nspeed = {ramp}\n'))
+        made = _orbit_problem(scenario(f'kind = "{kind}"\nspeed = {ramp}\n'))
         assert made.schedule == SpeedSchedule(
             (0.0, 2.0, 3.0), (first * RPM, last * RPM, last * RPM)
         )
@@ -92,14 +92,14 @@ def test_the_kind_of_a_ramp():
 
 @pytest.mark.slow
 def test_unbalance_and_static_load_act_unless_switched_off():
-    both = orbit_problem(constant(""))
+    both = _orbit_problem(constant(""))
     assert both.rotor.unbalance.tolist() == [5e-4]
     assert both.static_load == (800.0, 0.0)
     free = 'kind = "free_decay"\ninitial_displacement = ["1 um", "0 um"]'
-    assert orbit_problem(constant(free)).rotor.unbalance.tolist() == [0.0]
-    kept = orbit_problem(constant(f"{free}\nunbalance = true"))
+    assert _orbit_problem(constant(free)).rotor.unbalance.tolist() == [0.0]
+    kept = _orbit_problem(constant(f"{free}\nunbalance = true"))
     assert kept.rotor.unbalance.tolist() == [5e-4]
-    none = orbit_problem(constant("static_load = false\nunbalance = false"))
+    none = _orbit_problem(constant("static_load = false\nunbalance = false"))
     assert none.static_load == (0.0, 0.0)
     assert none.rotor.unbalance.tolist() == [0.0]
 
@@ -112,7 +112,7 @@ def test_loads_reach_the_problem_in_si():
         'base_motion = { displacement = ["10 um", "0 um"], frequency = "600 rpm" }\n'
         'base_shock = { acceleration = ["40 m/s^2", "0 m/s^2"], duration="6 ms", start="1 s" }\n'
     )
-    step, wave, base, shock = orbit_problem(constant(lines, JEFFCOTT)).loads
+    step, wave, base, shock = _orbit_problem(constant(lines, JEFFCOTT)).loads
     assert step == StepForce((1000.0, -2.0), 0.1, 0.2, 1)
     assert isinstance(wave, HarmonicForce)
     assert wave.frequency == pytest.approx(100.0 * np.pi)
@@ -127,7 +127,7 @@ def test_jeffcott_rotor():
     assert read == Rotor.jeffcott(60.0, 9.6e6, 6.0, 960.0, 1.2e-4)
     assert read.total_mass == 66.0
     assert read.rigid_mass is None
-    made = orbit_problem(constant("", JEFFCOTT)).rotor
+    made = _orbit_problem(constant("", JEFFCOTT)).rotor
     assert [node.name for node in made.nodes] == ["journal", "disc"]
     assert made.unbalance.tolist() == [0.0, 1.2e-4]
 
@@ -171,7 +171,7 @@ def test_linear_coefficients_belong_to_the_loaded_position():
     with pytest.raises(ScenarioError, match="loaded position"):
         Scenario.from_text(text)
     with pytest.raises(InputError, match="coefficient table"):
-        orbit_problem(Scenario.from_text(text.replace("static_load = false\n", "")))
+        _orbit_problem(Scenario.from_text(text.replace("static_load = false\n", "")))
 
 
 def test_an_eccentricity_ratio_stands_for_the_load_that_gives_it():
@@ -180,7 +180,7 @@ def test_an_eccentricity_ratio_stands_for_the_load_that_gives_it():
         base = text.replace('"free"', f'"{inception}"')
         rotor = '[rotor]\nmass = "20 kg"\n'
         one = scenario('speed = "9000 rpm"\nrevolutions = 2\n', rotor, base)
-        problem = orbit_problem(one)
+        problem = _orbit_problem(one)
         assert isinstance(problem.force, force)
         orbit = simulate_orbit(one)
         assert orbit.eccentricity_ratio == pytest.approx(0.4, abs=1e-5)
@@ -241,7 +241,7 @@ def test_shipped_orbits_say_what_is_seen_and_run(path):
     assert one.orbit is not None
     assert one.orbit.kind == said["orbit"]["kind"]
     for model in one.thermal_models:
-        problem = orbit_problem(one, thermal_model=model.value)
+        problem = _orbit_problem(one, thermal_model=model.value)
         pieces = simulate_pieces(problem, 1)
         begin = concatenate([next(pieces)])
         assert begin.status is OrbitStatus.RUNNING

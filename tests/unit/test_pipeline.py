@@ -11,7 +11,7 @@ from rotorsim.files.scenario import Scenario
 from rotorsim.show.job import write_results
 from rotorsim.study import orbits as orbit_steps
 from rotorsim.study.main_job import Attempts, compute
-from rotorsim.study.orbits import static_position
+from rotorsim.study.orbits import _static_position
 from rotorsim.study.stability import stability_curves
 from rotorsim.study.sweep import as_table, sweep_points
 
@@ -64,7 +64,7 @@ def test_threshold_speed_is_where_the_critical_mass_is_the_rotors(scenario, poin
 
 def test_static_position_is_where_the_table_says(scenario, points):
     one = as_table(points, scenario).select(radial_clearance=120e-6)
-    x, y = static_position(one, 120e-6)(float(one.speeds[1]))
+    x, y = _static_position(one, 120e-6)(float(one.speeds[1]))
     point = next(p for p in points if p.radial_clearance == pytest.approx(120e-6))
     assert np.hypot(x, y) == pytest.approx(0.5 * 120e-6)
     assert np.arctan2(y, x) == pytest.approx(point.attitude_angle)
@@ -101,7 +101,7 @@ def test_nothing_computed_is_lost_when_a_later_step_fails(scenario, points, tmp_
     def fail(*_arguments, **_options):
         raise FloatingPointError("no orbit today")
 
-    monkeypatch.setattr(orbit_steps, "orbit_problem", fail)
+    monkeypatch.setattr(orbit_steps, "_orbit_problem", fail)
     (tmp_path / "figures").write_text("a file where a folder is needed")
     results = compute(scenario, points, as_table(points, scenario))
     assert len(results.curves) == 2
@@ -143,7 +143,7 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
     from dataclasses import replace
 
     from rotorsim.bearing.drawing import STANDARD_GRAVITY
-    from rotorsim.study.main_job import map_of
+    from rotorsim.study.main_job import _map_of
 
     table = as_table(points, scenario)
     alone = replace(scenario, rotor=None)
@@ -158,5 +158,5 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
         (critical, alone, table),
         (load / STANDARD_GRAVITY, alone, stable),
     ):
-        found = map_of(case, known).dataset["mass"].values
+        found = _map_of(case, known).dataset["mass"].values
         assert found.mean() == pytest.approx(1.525 * mass, rel=1e-6)

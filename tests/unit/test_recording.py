@@ -21,7 +21,7 @@ from rotorsim.show.recording.charts import eigenvalues_at
 from rotorsim.show.recording.colours import colours
 from rotorsim.show.recording.runs import Run, frame_rows, thin
 from rotorsim.show.recording.series_view import envelope_rows, whirl_ratio
-from rotorsim.study.film_motion import FilmFrame
+from rotorsim.study.orbits import FilmFrame
 
 C = 1e-4
 

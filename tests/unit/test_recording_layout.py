@@ -16,7 +16,7 @@ from rotorsim.show.recording import RecordingContents, write_recording
 from rotorsim.show.recording.film_view import changing, quantities
 from rotorsim.show.recording.runs import Run, distinct_speeds
 from rotorsim.show.recording.series_view import MINIMUM_FILM, whirl_ratio
-from rotorsim.study.film_motion import FilmFrame
+from rotorsim.study.orbits import FilmFrame
 
 COUNT = 801
 

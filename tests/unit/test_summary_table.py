@@ -7,7 +7,7 @@ import io
 import pytest
 from rich.console import Console
 
-from rotorsim.cli.tables import heating_table, walls_lines
+from rotorsim.cli.tables import _heating_table, _walls_lines
 from rotorsim.status import Stability
 
 
@@ -33,7 +33,7 @@ ROWS = [
 
 def shown(**options: bool) -> str:
     console = Console(width=100, record=True, file=io.StringIO())
-    console.print(heating_table(ROWS, **options))
+    console.print(_heating_table(ROWS, **options))
     return console.export_text()
 
 
@@ -49,7 +49,7 @@ def test_no_critical_mass_beside_a_rotor_that_is_not_rigid(rigid, there):
 
 
 def test_the_part_of_the_heat_that_goes_through_the_walls():
-    (line,) = walls_lines(ROWS)
+    (line,) = _walls_lines(ROWS)
     assert line == "Through bush and shaft go 78 % of the heat (thd, c = 90 µm)"
     little = [{**ROWS[0], "thd": model(wall_heat_share=1e-7)}]
-    assert list(walls_lines(little)) == []
+    assert list(_walls_lines(little)) == []

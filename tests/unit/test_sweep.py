@@ -36,8 +36,7 @@ from rotorsim.model import (
     ThermalSettings,
 )
 from rotorsim.status import SolveStatus, Stability
-from rotorsim.study.journal import Journal
-from rotorsim.study.sweep import CHUNK, failed_point, sweep_points
+from rotorsim.study.sweep import CHUNK, Journal, failed_point, sweep_points
 
 PACKAGE = Path(rotorsim.__file__).parents[1]
 SPEEDS = [100.0 * (step + 1) for step in range(12)]
@@ -390,7 +389,7 @@ class Sends(Executor):
     def submit(self, fn, /, *args, **kwargs):
         future: Future = Future()
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("rotorsim.study.journal.model_digest", lambda: "another")
+            patch.setattr("rotorsim.study.sweep.model_digest", lambda: "another")
             try:
                 future.set_result(fn(*args, **kwargs))
             except Exception as error:

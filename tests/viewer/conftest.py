@@ -19,7 +19,7 @@ from scipy.linalg import expm
 from rotorsim.orbit import Orbit
 from rotorsim.show.recording import RecordingContents, write_recording
 from rotorsim.show.viewer import viewer_program
-from rotorsim.study.film_motion import FilmFrame
+from rotorsim.study.orbits import FilmFrame
 
 R, L, C, MU, ECC = 0.05, 0.08, 100e-6, 0.0277, 0.5
 PHI = np.arctan2(np.pi * np.sqrt(1 - ECC**2), 4 * ECC)

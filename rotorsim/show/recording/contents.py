@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ...orbit import Orbit
-from ...study.film_motion import FilmFrame
+from ...study.orbits import FilmFrame
 from ...study.stability import Campbell
 from .charts import Chart, cascade_charts, eigenvalue_chart, map_chart, spectrum_chart
 from .runs import Run, runs_of

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ...orbit.description import run_title
 from ...rows import QUANTITIES, RPM, ZERO_CELSIUS
-from ...study.film_motion import FilmFrame
+from ...study.orbits import FilmFrame
 from . import surfaces
 from .colours import LINE, TEXT, colours
 from .runs import Run, indices_of_frames, pick_run, send_run, speed_index, thin, tick_text

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...orbit import Orbit
 from ...orbit.description import run_names, run_title
 from ...rows import RPM
-from ...study.film_motion import FilmFrame
+from ...study.orbits import FilmFrame
 from .colours import TEXT
 
 TIME = "time"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...study.film_motion import FilmFrame
+from ...study.orbits import FilmFrame
 
 Array = NDArray[np.float64]
 MILLI = 1e3
