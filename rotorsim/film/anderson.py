@@ -16,12 +16,8 @@ class AndersonMixer:
     The differences are kept in place and their products updated one row a step, so that a step
     costs about two passes over the history.
 
-    Parameters
-    ----------
-    size : int
-        Unknowns.
-    depth : int
-        Pairs remembered.
+    size : Unknowns.
+    depth : Pairs remembered.
     """
 
     def __init__(self, size: int, depth: int = 6) -> None:

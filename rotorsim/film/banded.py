@@ -35,12 +35,8 @@ class SingularFilmError(ArithmeticError):
 class _FilmFactor:
     """Cholesky factor of the operator on the active cells; `solve` may be called repeatedly.
 
-    Attributes
-    ----------
-    factor : (width + 1, cells) array
-        Diagonals of the lower factor, as LAPACK keeps them.
-    order : array
-        Columns of cells in the order of the band.
+    factor : (width + 1, cells) array. Diagonals of the lower factor, as LAPACK keeps them.
+    order : Columns of cells in the order of the band.
     active : (n, m) bool array
     """
 

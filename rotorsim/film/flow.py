@@ -26,27 +26,19 @@ Flags = NDArray[np.bool_]
 class FilmFlow:
     """Faces in the order west, east, south, north, as seen from each cell.
 
-    Attributes
-    ----------
-    step : (4, n, m) array
-        Pressure difference across each face's spacing, along +theta or +y [Pa].
-    poiseuille : (4, n, m) array
-        g [N m]: h^3 times the pressure gradient times the face length, along +theta or +y.
-    couette : (2, n, m) array
-        c [m3/s] on west and east faces.
-    shared : (4, n, m) bool array
-        Layer shares are the mean of both cells behind the face; else the cell's own.
-    inlet : (n, m) bool array
-        Oil enters through the west face from a groove, a slot or a re-formed film's make-up, not
-        from the cell before.
-    flux : (4, n, m) array
-        Volume fluxes [m3/s] along +theta or +y.
-    liquid_fraction : (n, m) array
-        1 in the full film.
-    fresh_fraction : (n, m) array
-        Part of the oil in each cell that came in through an inlet. Where a film re-forms the
-        rupture models without conservation of mass add what is missing; it must not reach a
-        groove as hot oil.
+    step : (4, n, m) array. Pressure difference across each face's spacing, along +theta or +y [Pa].
+    poiseuille : (4, n, m) array. g [N m]: h^3 times the pressure gradient times the face length,
+        along +theta or +y.
+    couette : (2, n, m) array. c [m3/s] on west and east faces.
+    shared : (4, n, m) bool array. Layer shares are the mean of both cells behind the face; else the
+        cell's own.
+    inlet : (n, m) bool array. Oil enters through the west face from a groove, a slot or a re-formed
+        film's make-up, not from the cell before.
+    flux : (4, n, m) array. Volume fluxes [m3/s] along +theta or +y.
+    liquid_fraction : (n, m) array. 1 in the full film.
+    fresh_fraction : (n, m) array. Part of the oil in each cell that came in through an inlet. Where
+        a film re-forms the rupture models without conservation of mass add what is missing; it must
+        not reach a groove as hot oil.
     """
 
     step: Array

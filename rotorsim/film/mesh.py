@@ -30,23 +30,16 @@ _GRADED_SHARE = 0.5
 class FilmMesh:
     """Cells of the film, in the film frame (see `FilmProblem`).
 
-    Attributes
-    ----------
-    theta_faces : (n + 1,) array
-        [rad]; one full turn.
-    y_faces : (m + 1,) array
-        [m]; from 0 (half) or -L/2 (full) to L/2.
-    half : bool
-        Only the half y >= 0 is solved; the other is its mirror image.
+    theta_faces : (n + 1,) array [rad]; one full turn.
+    y_faces : (m + 1,) array [m]; from 0 (half) or -L/2 (full) to L/2.
+    half : Only the half y >= 0 is solved; the other is its mirror image.
     supply : (n, m) int array
         -1 in the film, else the number of the groove that the cell belongs to.
-    slot : (n,) bool array
-        True where p = 0 and fresh film begin at the cell's first face (``max_film``).
-    region : (n,) int array
-        Number of the stretch of film a column belongs to; stretches end at slots, at joints of
-        lobes and at grooves.
-    radius : float
-        Journal radius [m].
+    slot : (n,) bool array. True where p = 0 and fresh film begin at the cell's first face
+        (``max_film``).
+    region : (n,) int array. Number of the stretch of film a column belongs to; stretches end at
+        slots, at joints of lobes and at grooves.
+    radius : Journal radius [m].
     """
 
     theta_faces: Array

@@ -30,26 +30,17 @@ WEST, EAST, SOUTH, NORTH = 0, 1, 2, 3
 class FilmOperator:
     """Faces of every cell, in the order west, east, south, north.
 
-    Attributes
-    ----------
-    conductance : (4, n, m) array
-        a_f [m3/(s Pa)], as seen from the cell.
-    interior : (4, n, m) bool array
-        True where a film cell lies behind the face, False for a known pressure or a wall.
-    fixed_pressure : (4, n, m) array
-        The known pressure behind an unlinked face [Pa].
-    face_thickness : (4, n, m) array
-        h on the face [m].
-    couette : (2, n, m) array
-        U h (1 - G) (face length) on the west and east faces [m3/s].
-    spacing : (4, n, m) array
-        Distance over which the pressure difference acts, centre to centre or centre to face [m].
-    fixed : (n, m) bool array
-        Cells of grooves: the pressure is `fixed_pressure[WEST]` there.
-    area : (n, m) array
-        [m2]
-    dx, dy : (n,) and (m,) arrays
-        Cell lengths [m].
+    conductance : (4, n, m) array. a_f [m3/(s Pa)], as seen from the cell.
+    interior : (4, n, m) bool array. True where a film cell lies behind the face, False for a known
+        pressure or a wall.
+    fixed_pressure : (4, n, m) array. The known pressure behind an unlinked face [Pa].
+    face_thickness : (4, n, m) array. h on the face [m].
+    couette : (2, n, m) array. U h (1 - G) (face length) on the west and east faces [m3/s].
+    spacing : (4, n, m) array. Distance over which the pressure difference acts, centre to centre or
+        centre to face [m].
+    fixed : (n, m) bool array. Cells of grooves: the pressure is `fixed_pressure[WEST]` there.
+    area : (n, m) array [m2]
+    dx, dy : (n,) and (m,) arrays. Cell lengths [m].
     """
 
     conductance: Array
@@ -86,10 +77,7 @@ class FaceTopology:
 def face_topology(mesh: FilmMesh, supply_pressure: Array) -> FaceTopology:
     """Neighbours, distances and known pressures of every face.
 
-    Parameters
-    ----------
-    supply_pressure : (grooves,) array
-        [Pa]
+    supply_pressure : (grooves,) array [Pa]
     """
     n, m = mesh.shape
     fixed = mesh.supply >= 0
@@ -151,14 +139,9 @@ def film_operator(
 ) -> FilmOperator:
     """Conductances and Couette flow for the film thickness and the viscosity integrals.
 
-    Parameters
-    ----------
-    topology : FaceTopology
-    thickness : (5, n, m) array
-        At each cell's centre and on its west, east, south and north face, seen from inside [m].
-    layers : LayerIntegrals
-    surface_speed : float
-        [m/s]
+    thickness : (5, n, m) array. At each cell's centre and on its west, east, south and north face,
+        seen from inside [m].
+    surface_speed : [m/s]
     """
     shape = topology.interior.shape
     conductance, face_thickness = np.empty(shape), np.empty(shape)

@@ -38,20 +38,11 @@ class _FilmForce(Protocol):
 class ActuatedForce:
     """Film and collocated actuator: a force that `rotorsim.orbit.simulate` takes like a film's.
 
-    Attributes
-    ----------
-    film : FilmForce
-        Nonlinear film (or linear coefficients).
-    feedback : StateFeedback
-        Saturated at its ``max_force`` per axis.
-    reference : (float, float)
-        Position [m] about which the actuator acts: the equilibrium of the film alone, so that the
-        actuator carries no static load.
-
-    Raises
-    ------
-    InputError
-        The feedback is not one of the journal's state.
+    film : Nonlinear film (or linear coefficients).
+    feedback : Saturated at its ``max_force`` per axis.
+    reference : (float, float). Position [m] about which the actuator acts: the equilibrium of the
+        film alone, so that the actuator carries no static load.
+    Raises InputError: The feedback is not one of the journal's state.
     """
 
     film: _FilmForce

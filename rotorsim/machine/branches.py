@@ -30,21 +30,13 @@ class Verdict(StrEnum):
 class Modes:
     """Eigenvalues of A(parameter), each column one continuous branch.
 
-    Attributes
-    ----------
-    parameter : (n,) array
-        Shaft speed [rad/s] unless said otherwise.
-    eigenvalues : (n, k) complex array
-        [rad/s]
-    accuracy : (n, k) array
-        Estimated bound of each eigenvalue's error [rad/s].
-    shapes : (n, k, m) complex array
-        Displacements of each mode, of unit length.
-    smooth : (n,) bool array
-        False where the step from the point before stayed abrupt at the finest refinement (a
-        pair of real eigenvalues met there, say): the labels may have been exchanged.
-    planes : tuple of (int, int)
-        Unknowns x, y of the nodes.
+    parameter : (n,) array. Shaft speed [rad/s] unless said otherwise.
+    eigenvalues : (n, k) complex array [rad/s]
+    accuracy : (n, k) array. Estimated bound of each eigenvalue's error [rad/s].
+    shapes : (n, k, m) complex array. Displacements of each mode, of unit length.
+    smooth : (n,) bool array. False where the step from the point before stayed abrupt at the finest
+        refinement (a pair of real eigenvalues met there, say): the labels may have been exchanged.
+    planes : tuple of (int, int). Unknowns x, y of the nodes.
     """
 
     parameter: Array
@@ -114,10 +106,7 @@ class Modes:
     def whirl_direction(self, x: int = 0, y: int = 1) -> Array:
         """Sense of the orbit: 1 a forward circle, -1 a backward circle, 0 a straight line.
 
-        Parameters
-        ----------
-        x, y : int
-            The unknowns whose orbit is meant.
+        x, y : The unknowns whose orbit is meant.
         """
         a, b = self.shapes[..., x], self.shapes[..., y]
         area = -2.0 * np.imag(np.conj(a) * b) * np.sign(self.eigenvalues.imag)

@@ -24,12 +24,8 @@ _MOST_STATES = 12
 def receptance(system: control.StateSpace, frequency: ArrayLike) -> ComplexArray:
     """Displacement per force, shape (n_output, n_input, n_frequency) [m/N].
 
-    Parameters
-    ----------
-    system : control.StateSpace
-        From `state_space` and its like.
-    frequency : (n,) array
-        [rad/s]
+    system : From `state_space` and its like.
+    frequency : (n,) array [rad/s]
     """
     omega = np.atleast_1d(np.asarray(frequency, dtype=float))
     response = np.asarray(system(1j * omega, squeeze=False))
@@ -48,13 +44,9 @@ def step_response(
 class StateFeedback:
     """Actuator force from the rotor's state, F = -gain state, limited per axis.
 
-    Attributes
-    ----------
-    gain : (m, n) array
-        [N/m] for the displacements, [N s/m] for the velocities. For a rigid rotor (2, 4), on
-        x, y, vx, vy; what acts in time (`ActuatedForce`) is of this kind.
-    max_force : float
-        Saturation of each axis [N].
+    gain : (m, n) array [N/m] for the displacements, [N s/m] for the velocities. For a rigid rotor
+        (2, 4), on x, y, vx, vy; what acts in time (`ActuatedForce`) is of this kind.
+    max_force : Saturation of each axis [N].
     """
 
     gain: Array
@@ -97,27 +89,16 @@ def design_lqr(
 ) -> StateFeedback:
     """Linear-quadratic regulator weighted by what counts as large (Bryson's rule).
 
-    Parameters
-    ----------
-    system : control.StateSpace
-        Its inputs are the actuator's forces, its outputs the displacements to be kept small: the
-        rigid rotor of `state_space`, or some nodes of another rotor, for example
+    system : Its inputs are the actuator's forces, its outputs the displacements to be kept small:
+        the rigid rotor of `state_space`, or some nodes of another rotor, for example
         ``state_space(machine, speed=...)[outputs, inputs]`` with the signals' names.
-    displacement_scale, velocity_scale, force_scale : float
-        Acceptable displacement [m], velocity [m/s] and force [N].
-    max_force : float
-        Saturation [N].
-
-    Returns
-    -------
-    StateFeedback
-        On all states of `system`: of a rotor with many, an observer has to give them.
-
-    Raises
-    ------
-    InputError
-        A scale is not above zero, every degree of freedom has an actuator, or no such regulator
-        exists (these forces do not reach an unstable mode, or these outputs do not show it).
+    displacement_scale, velocity_scale, force_scale : Acceptable displacement [m], velocity [m/s]
+        and force [N].
+    max_force : Saturation [N].
+    Returns: On all states of `system`: of a rotor with many, an observer has to give them.
+    Raises InputError: A scale is not above zero, every degree of freedom has an actuator, or no
+        such regulator exists (these forces do not reach an unstable mode, or these outputs do not
+        show it).
     """
     for key, value in (
         ("displacement_scale", displacement_scale),
@@ -199,22 +180,12 @@ def design_pd(
 ) -> StateFeedback:
     """Least derivative gain with which every eigenvalue has a real part of `growth_rate` or less.
 
-    Parameters
-    ----------
-    coefficients : Coefficients
-    mass : float
-        [kg]
-    growth_rate : float
-        Wanted largest real part, zero or negative [1/s].
-    stiffness : float
-        Proportional gain [N/m].
-    max_force : float
-        [N]
-
-    Raises
-    ------
-    InputError
-        No derivative gain reaches it: more damping makes the slow modes slower still.
+    mass : [kg]
+    growth_rate : Wanted largest real part, zero or negative [1/s].
+    stiffness : Proportional gain [N/m].
+    max_force : [N]
+    Raises InputError: No derivative gain reaches it: more damping makes the slow modes slower
+        still.
     """
     if not growth_rate <= 0.0:
         raise InputError("must be 0 or below (1/s)", key="growth_rate", value=growth_rate)
@@ -249,17 +220,12 @@ def design_pd(
 class LoopMargins:
     """Margins of one axis' loop, the other axis' loop closed.
 
-    Attributes
-    ----------
-    gain_increase, gain_reduction : float
-        Factors (above 1 and below 1) by which the loop gain may change before it becomes unstable;
-        infinity and 0 where it never does.
-    phase_margin : float
-        Least phase change that makes it unstable [rad]; infinity without a gain crossover.
-    modulus_margin : float
-        Least distance of the open loop's Nyquist curve from -1.
-    stable : bool
-        Of the closed loop; margins of an unstable loop say how far it is from being stable.
+    gain_increase, gain_reduction : Factors (above 1 and below 1) by which the loop gain may change
+        before it becomes unstable; infinity and 0 where it never does.
+    phase_margin : Least phase change that makes it unstable [rad]; infinity without a gain
+        crossover.
+    modulus_margin : Least distance of the open loop's Nyquist curve from -1.
+    stable : Of the closed loop; margins of an unstable loop say how far it is from being stable.
     """
 
     gain_increase: float

@@ -23,12 +23,8 @@ _FORWARD = {"x": 1.0, "y": -1j, "theta_x": 1j, "theta_y": 1.0}
 class CriticalSpeedMap:
     """Forward synchronous critical speeds of an undamped rotor on identical isotropic springs.
 
-    Attributes
-    ----------
-    stiffness : (n,) array
-        Of each support [N/m].
-    speed : (n, k) array
-        Ascending [rad/s]; NaN where a disc's gyroscopic moment leaves fewer.
+    stiffness : (n,) array. Of each support [N/m].
+    speed : (n, k) array. Ascending [rad/s]; NaN where a disc's gyroscopic moment leaves fewer.
     """
 
     stiffness: Array
@@ -40,25 +36,13 @@ def critical_speed_map(
 ) -> CriticalSpeedMap:
     """Forward synchronous critical speeds over the stiffness of all supports.
 
-    Parameters
-    ----------
-    rotor : Rotor
-        Its damping and circulatory matrix are left out.
-    nodes : sequence of int
-        Where a spring stands.
-    stiffness : (n,) array
-        Of each spring, above 0 [N/m].
-    count : int
-        Number of critical speeds.
+    rotor : Its damping and circulatory matrix are left out.
+    nodes : Where a spring stands.
+    stiffness : (n,) array. Of each spring, above 0 [N/m].
+    count : Number of critical speeds.
+    Raises InputError: A stiffness is not above 0, a node has unknowns other than displacements and
+        rotations, or the springs do not hold the rotor.
 
-    Raises
-    ------
-    InputError
-        A stiffness is not above 0, a node has unknowns other than displacements and rotations, or
-        the springs do not hold the rotor.
-
-    Notes
-    -----
     A forward circle r exp(i Omega t) meets (K + k - Omega^2 (M - P)) r = 0 with P = i G on it, a
     Hermitian problem in 1/Omega^2 with one solution for each positive eigenvalue.
     """
@@ -110,14 +94,8 @@ def _condensed(motions: ComplexArray, matrix: ArrayLike) -> ComplexArray:
 def principal_stiffness(machine: Machine, speeds: ArrayLike) -> dict[str, Array]:
     """Principal synchronous stiffnesses (n, 2) [N/m] of each load-carrying support, by name.
 
-    Parameters
-    ----------
-    machine : Machine
-    speeds : (n,) array
-        [rad/s]
+    speeds : (n,) array [rad/s]
 
-    Notes
-    -----
     Eigenvalues of the symmetric part of Re Z(i Omega), after the support's own unknowns (pads,
     housing) are condensed; ascending.
     """

@@ -31,20 +31,13 @@ _MOST = 1e4
 class DecrementCurve:
     """Logarithmic decrement of the critical forward mode against destabilising stiffness.
 
-    Attributes
-    ----------
-    speed : float
-        [rad/s]
-    anticipated : float
-        Q_A, the sum over the places [N/m].
-    stiffness : (n,) array
-        Q, shared by the places as the anticipated ones are [N/m].
-    decrement, frequency : (n,) arrays
-        Of the forward mode that becomes unstable first, or without any Q0 in reach of the one whose
-        growth rate rises most; damped frequency [rad/s].
-    threshold : float or None
-        Q0, where the machine becomes unstable [N/m]; 0: it is without any; None: not up to 10 000
-        times the anticipated one.
+    speed : [rad/s]
+    anticipated : Q_A, the sum over the places [N/m].
+    stiffness : (n,) array. Q, shared by the places as the anticipated ones are [N/m].
+    decrement, frequency : (n,) arrays. Of the forward mode that becomes unstable first, or without
+        any Q0 in reach of the one whose growth rate rises most; damped frequency [rad/s].
+    threshold : Q0, where the machine becomes unstable [N/m]; 0: it is without any; None: not up to
+        10 000 times the anticipated one.
     """
 
     speed: float
@@ -86,20 +79,10 @@ def decrement_curve(
 ) -> DecrementCurve:
     """Follow the decrement of the critical forward mode over destabilising stiffness.
 
-    Parameters
-    ----------
-    machine : Machine
-    speed : float
-        [rad/s]
-    anticipated : mapping of int to float
-        Q_A at each node [N/m].
-    points : int
-        Of the curve, from 0 to ten times the anticipated stiffness or just beyond Q0.
-
-    Raises
-    ------
-    InputError
-        The anticipated stiffness is not above 0, or the machine has no forward mode.
+    speed : [rad/s]
+    anticipated : Q_A at each node [N/m].
+    points : Of the curve, from 0 to ten times the anticipated stiffness or just beyond Q0.
+    Raises InputError: The anticipated stiffness is not above 0, or the machine has no forward mode.
     """
     total = sum(anticipated.values())
     if not (math.isfinite(total) and total > 0.0 and min(anticipated.values()) >= 0.0):

@@ -35,24 +35,13 @@ _MARGIN_ABOVE = "min(26, 10 + 17 (1 - 1/(AF - 1.5))) % of the maximum continuous
 class Check:
     """One requirement and whether it is met.
 
-    Attributes
-    ----------
-    name : str
-    place : str
-        Probe, clearance or case that it is about.
-    value, limit : float or None
-        SI; None: not known or not defined.
-    comparison : str
-        ``<=`` or ``>=``: how the value must compare with the limit.
-    unit : str
-        Of both, empty for a number.
-    formula : str
-        Of the limit.
-    edition : str
-        As the input names it.
-    passed : bool or None
-        None: it could not be judged, and `note` says why.
-    note : str
+    place : Probe, clearance or case that it is about.
+    value, limit : SI; None: not known or not defined.
+    comparison : ``<=`` or ``>=``: how the value must compare with the limit.
+    unit : Of both, empty for a number.
+    formula : Of the limit.
+    edition : As the input names it.
+    passed : None: it could not be judged, and `note` says why.
     """
 
     name: str
@@ -81,12 +70,8 @@ def _judged(
 def required_margin(amplification: float, below: bool) -> float:
     """Required separation margin, as a share of the speed it is measured from.
 
-    Parameters
-    ----------
-    amplification : float
-        Amplification factor AF.
-    below : bool
-        Whether the critical speed lies below the range of speeds, else above it.
+    amplification : Amplification factor AF.
+    below : Whether the critical speed lies below the range of speeds, else above it.
     """
     if amplification < _CRITICAL_AMPLIFICATION:
         return 0.0
@@ -127,10 +112,7 @@ def margin_check(peak: Peak, place: str, continuous: tuple[float, float], editio
 def vibration_limit(speed: float) -> float:
     """Peak-to-peak limit at probes, min(25.4, 25.4 sqrt(12000/N)) um [m].
 
-    Parameters
-    ----------
-    speed : float
-        Maximum continuous speed [rad/s].
+    speed : Maximum continuous speed [rad/s].
     """
     return _VIBRATION * min(1.0, math.sqrt(12000.0 / (speed * RPM)))
 
@@ -164,17 +146,9 @@ def clearance_checks(
 ) -> list[Check]:  # fmt: skip
     """Peak-to-peak response at close clearances, scaled, up to a speed.
 
-    Parameters
-    ----------
-    response : UnbalanceResponse
-    clearances : sequence of Clearance
-    scale : float or None
-        From `scale_factor`.
-    case : str
-        Name of the unbalances.
-    top : float
-        Highest speed, trip for example [rad/s].
-    edition : str
+    scale : From `scale_factor`.
+    case : Name of the unbalances.
+    top : Highest speed, trip for example [rad/s].
     """
     checks = []
     for number, one in enumerate(clearances, start=1):
@@ -220,17 +194,9 @@ def lateral_checks(
 ) -> list[Check]:
     """All checks of a machine.
 
-    Parameters
-    ----------
-    responses, whole : mapping of str to the response
-        By the name of the unbalances: at the probes, and of all nodes.
-    clearances : sequence of Clearance
-    curves : sequence of DecrementCurve
-    continuous : (float, float)
-        Range of continuous speeds [rad/s].
-    top : float
-        Highest speed of the clearance check, trip for example [rad/s].
-    edition : str
+    responses, whole : By the name of the unbalances: at the probes, and of all nodes.
+    continuous : (float, float). Range of continuous speeds [rad/s].
+    top : Highest speed of the clearance check, trip for example [rad/s].
     """
     checks = []
     for case, probes in responses.items():

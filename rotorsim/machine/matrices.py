@@ -16,22 +16,10 @@ _SINGULAR = 1e12
 def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
     """State matrices of the rigid rotor m x'' + C x' + K x = 0 (Dal Eq. 21).
 
-    Parameters
-    ----------
-    stiffness, damping : (..., 2, 2) arrays
-        [N/m], [N s/m]
-    mass : array
-        Per bearing [kg], broadcast against the leading dimensions.
-
-    Returns
-    -------
-    (..., 4, 4) array
-        Acting on (x, y, vx, vy).
-
-    Raises
-    ------
-    InputError
-        A mass is not above zero.
+    stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
+    mass : Per bearing [kg], broadcast against the leading dimensions.
+    Returns (..., 4, 4) array: Acting on (x, y, vx, vy).
+    Raises InputError: A mass is not above zero.
     """
     k = np.asarray(stiffness, dtype=float)
     c = np.asarray(damping, dtype=float)
@@ -54,25 +42,14 @@ def massive_unknowns(mass: Array) -> NDArray[np.intp]:
 def first_order(mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> tuple[Array, Array]:
     """State matrix and input matrix of M q'' + D q' + K q = f.
 
-    Parameters
-    ----------
-    mass, damping, stiffness : (..., n, n) arrays
-        Unknowns without mass, whose rows of M are zero, must be damped.
+    mass, damping, stiffness : (..., n, n) arrays. Unknowns without mass, whose rows of M are zero,
+        must be damped.
+    Returns state_matrix : (..., n + m, n + m) array. Acting on all n displacements, then the
+        velocities of the m unknowns with mass.
+    Returns input_matrix : (..., n + m, n) array. For forces on each unknown.
+    Raises InputError: The damping of the massless unknowns is singular: their motion is not
+        determined.
 
-    Returns
-    -------
-    state_matrix : (..., n + m, n + m) array
-        Acting on all n displacements, then the velocities of the m unknowns with mass.
-    input_matrix : (..., n + m, n) array
-        For forces on each unknown.
-
-    Raises
-    ------
-    InputError
-        The damping of the massless unknowns is singular: their motion is not determined.
-
-    Notes
-    -----
     The rows b of massless unknowns read q_b' = D_bb^-1 (f_b - K_b q - D_ba v): states of first
     order. Where a matrix is not finite the result is not either.
     """

@@ -36,16 +36,10 @@ _SAME_PLACE = 1e-6
 class Peak:
     """A peak of the response over speed.
 
-    Attributes
-    ----------
-    speed : float
-        [rad/s]
-    amplitude : float
-        [m]
-    lower, upper : float or None
-        Speeds on both sides at which the amplitude is 0.707 of the peak's [rad/s]; None: there is
-        none, and `note` says why.
-    note : str
+    speed : [rad/s]
+    amplitude : [m]
+    lower, upper : Speeds on both sides at which the amplitude is 0.707 of the peak's [rad/s]; None:
+        there is none, and `note` says why.
     """
 
     speed: float
@@ -67,23 +61,14 @@ class Peak:
 class ProbeResponse:
     """Synchronous response at one probe.
 
-    Attributes
-    ----------
-    name : str
-    at : float
-        From the left end [m].
-    angle : float
-        From x in the direction of rotation [rad].
-    speed : (n,) array
-        [rad/s]
-    amplitude : (n,) array
-        Zero to peak, along the probe [m].
-    phase : (n,) array
-        Lag behind the largest unbalance, 0 to 2 pi [rad]: at rest both pass the probe together.
-    major_axis : (n,) array
-        Half the major axis of the node's orbit [m].
-    peaks : tuple of Peak
-        Of `amplitude`, ascending in speed.
+    at : From the left end [m].
+    angle : From x in the direction of rotation [rad].
+    speed : (n,) array [rad/s]
+    amplitude : (n,) array. Zero to peak, along the probe [m].
+    phase : (n,) array. Lag behind the largest unbalance, 0 to 2 pi [rad]: at rest both pass the
+        probe together.
+    major_axis : (n,) array. Half the major axis of the node's orbit [m].
+    peaks : Of `amplitude`, ascending in speed.
     """
 
     name: str
@@ -99,10 +84,7 @@ class ProbeResponse:
 def node_at(rotor: Rotor, at: float) -> int:
     """Return the number of the node at a place [m].
 
-    Raises
-    ------
-    InputError
-        The rotor has no node there.
+    Raises InputError: The rotor has no node there.
     """
     positions = np.array([node.position for node in rotor.nodes])
     distance = np.abs(positions - at)
@@ -114,13 +96,8 @@ def node_at(rotor: Rotor, at: float) -> int:
 def response_speeds(machine: Machine, low: float, high: float, found: Modes | None = None) -> Array:
     """Speeds (n,) [rad/s] for a response: even ones, and more near critical speeds.
 
-    Parameters
-    ----------
-    machine : Machine
-    low, high : float
-        [rad/s]
-    found : Modes, optional
-        Of the machine over these speeds. Without them narrow peaks may lie between two speeds.
+    low, high : [rad/s]
+    found : Of the machine over these speeds. Without them narrow peaks may lie between two speeds.
     """
     speeds = [np.linspace(low, high, _POINTS)]
     for one in [] if found is None else critical_speeds(machine, found):
@@ -136,18 +113,9 @@ def probe_responses(
 ) -> tuple[ProbeResponse, ...]:
     """Response to the rotor's unbalance at probes, with refined peaks.
 
-    Parameters
-    ----------
-    machine : Machine
-    probes : sequence of Probe
-        Where the rotor has a node.
-    speeds : (n,) array
-        Ascending [rad/s], for example from `response_speeds`.
-
-    Raises
-    ------
-    InputError
-        The rotor has no unbalance, or no node at a probe.
+    probes : Where the rotor has a node.
+    speeds : (n,) array. Ascending [rad/s], for example from `response_speeds`.
+    Raises InputError: The rotor has no unbalance, or no node at a probe.
     """
     nodes = [node_at(machine.rotor, probe.at) for probe in probes]
     response = unbalance_response(machine, speeds)
@@ -180,12 +148,8 @@ def find_peaks(
 ) -> tuple[Peak, ...]:
     """Peaks of a response, each refined between its neighbours.
 
-    Parameters
-    ----------
-    amplitude : callable
-        At any speed between the first and the last.
-    speeds, values : (n,) arrays
-        Where it is known already, ascending; NaN where it is not known.
+    amplitude : At any speed between the first and the last.
+    speeds, values : (n,) arrays. Where it is known already, ascending; NaN where it is not known.
     """
     inner = (values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])
     return tuple(_peak(amplitude, speeds, values, int(i)) for i in np.flatnonzero(inner) + 1)

@@ -42,25 +42,11 @@ def _balanced(a: Array) -> Array:
 def growth_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
     """Largest real part of the four eigenvalues: positive where the rotor is unstable.
 
-    Parameters
-    ----------
-    stiffness, damping : (..., 2, 2) arrays
-        [N/m], [N s/m]
-    mass : array
-        [kg], broadcast against the leading dimensions.
+    stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
+    mass : [kg], broadcast against the leading dimensions.
+    Returns: [1/s]; NaN where a coefficient is not finite.
+    Raises InputError: A mass is not above zero.
 
-    Returns
-    -------
-    array
-        [1/s]; NaN where a coefficient is not finite.
-
-    Raises
-    ------
-    InputError
-        A mass is not above zero.
-
-    Notes
-    -----
     With M(s) the mean of the two diagonal entries of s^2 + (C s + K)/m, the characteristic
     polynomial is M(s)^2 - N(s), N a quadratic: the form from which Ferrari's method starts. It is
     solved in the time unit (m^2/|det K|)^(1/4), and Newton polishes each root in that same form,
@@ -91,12 +77,8 @@ def growth_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> A
 def growth_rate_map(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
     """Growth rates of every operating point with every mass, shape (..., n_mass) [1/s].
 
-    Parameters
-    ----------
-    stiffness, damping : (..., 2, 2) arrays
-        [N/m], [N s/m]
-    mass : (n_mass,) array
-        [kg]
+    stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
+    mass : (n_mass,) array [kg]
     """
     k, c = np.broadcast_arrays(np.asarray(stiffness, float), np.asarray(damping, float))
     m = np.ascontiguousarray(np.atleast_1d(np.asarray(mass, dtype=float)))

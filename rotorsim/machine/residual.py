@@ -30,16 +30,10 @@ _ALIKE = 0.9
 class UnbalancePlane:
     """An unbalance at one place.
 
-    Attributes
-    ----------
-    at : float
-        From the left end [m].
-    amount : float
-        [kg m]
-    phase : float
-        0 or pi [rad].
-    mass : float
-        W of the formula [kg].
+    at : From the left end [m].
+    amount : [kg m]
+    phase : 0 or pi [rad].
+    mass : W of the formula [kg].
     """
 
     at: float
@@ -52,12 +46,7 @@ class UnbalancePlane:
 class UnbalanceCase:
     """Unbalances that excite one mode.
 
-    Attributes
-    ----------
-    name : str
-    speed : float
-        At which the mode is critical, or the highest one where it is not [rad/s].
-    planes : tuple of UnbalancePlane
+    speed : At which the mode is critical, or the highest one where it is not [rad/s].
     """
 
     name: str
@@ -74,12 +63,8 @@ class UnbalanceCase:
 def residual_unbalance(mass: float, speed: float) -> float:
     """Residual unbalance U_r [kg m] of one plane: max(6350 W/N, 0.254 W) g mm.
 
-    Parameters
-    ----------
-    mass : float
-        Journal static load, or overhung mass, W [kg].
-    speed : float
-        Maximum continuous speed [rad/s].
+    mass : Journal static load, or overhung mass, W [kg].
+    speed : Maximum continuous speed [rad/s].
     """
     return max(6350.0 * mass / (speed * RPM), 0.254 * mass) * 1e-6
 
@@ -89,21 +74,12 @@ def unbalance_cases(
 ) -> tuple[UnbalanceCase, ...]:
     """Unbalances for every mode that is critical within the speeds of `found`.
 
-    Parameters
-    ----------
-    machine : Machine
-        With positions of its rotor's nodes.
-    found : Modes
-        Of the machine over speed.
-    loads : mapping of int to float
-        Static load on each bearing by its node [N].
-    speed : float
-        Maximum continuous speed [rad/s].
-    factor : float
-        Times the residual unbalance.
+    machine : With positions of its rotor's nodes.
+    found : Of the machine over speed.
+    loads : Static load on each bearing by its node [N].
+    speed : Maximum continuous speed [rad/s].
+    factor : Times the residual unbalance.
 
-    Notes
-    -----
     Without any critical speed the lowest mode at the last speed is taken. Modes of like shape (of
     the two planes) make one case.
     """

@@ -85,13 +85,8 @@ def _signal_name(node: str) -> str:
 class Pole:
     """One eigenvalue in an engineer's terms.
 
-    Attributes
-    ----------
-    value : complex
-        [rad/s]
-    damped_frequency : float
-        [rad/s]
-    damping_ratio : float
+    value : [rad/s]
+    damped_frequency : [rad/s]
     """
 
     value: complex

@@ -31,19 +31,11 @@ _TOLERANCE = 1e-6
 class StaticEquilibrium:
     """Static state of a rotor.
 
-    Attributes
-    ----------
-    nodes : tuple of int
-        Nodes of the supports.
-    reactions : (n, 2) array
-        Load on each support along x and y [N].
-    journal : (n, 2) array
-        Displacement of the journal in its housing [m].
-    displacement : (size,) array
-        Of all unknowns of the rotor [m, rad].
-    converged : bool
-    residual : float
-        What the reactions are off by, relative to the load of the whole rotor.
+    nodes : Nodes of the supports.
+    reactions : (n, 2) array. Load on each support along x and y [N].
+    journal : (n, 2) array. Displacement of the journal in its housing [m].
+    displacement : (size,) array. Of all unknowns of the rotor [m, rad].
+    residual : What the reactions are off by, relative to the load of the whole rotor.
     """
 
     nodes: tuple[int, ...]
@@ -62,17 +54,10 @@ def weight(rotor: Rotor) -> Array:
 def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Array:
     """Loads (2, 2) [N] on two supports.
 
-    Parameters
-    ----------
-    rotor : Rotor
-        With positions of its nodes.
-    force : (size,) array
-        Static forces and moments on the rotor's unknowns [N, N m].
-    nodes : sequence of int
-        Nodes of the two supports.
+    rotor : With positions of its nodes.
+    force : (size,) array. Static forces and moments on the rotor's unknowns [N, N m].
+    nodes : Nodes of the two supports.
 
-    Notes
-    -----
     The rotor's rigid motions do no work: for each plane the two reactions balance the forces along
     a translation and a rotation, taken from the stiffness matrix' own rigid motions.
     """
@@ -86,10 +71,8 @@ def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Ar
 def _rigid_motions(rotor: Rotor) -> Array:
     """Displacements (4, size) of the rotor's free motions: two translations, two rotations.
 
-    Raises
-    ------
-    InputError
-        The positions of the nodes are not known, or the rotor is not free without its supports.
+    Raises InputError: The positions of the nodes are not known, or the rotor is not free without
+        its supports.
     """
     positions = np.array([node.position for node in rotor.nodes])
     motions = np.zeros((4, rotor.size))
@@ -127,28 +110,14 @@ def static_equilibrium(
 ) -> StaticEquilibrium:
     """Equilibrium of a rotor on supports of any number.
 
-    Parameters
-    ----------
-    rotor : Rotor
-    force : (size,) array
-        Static forces on its unknowns [N].
-    nodes : sequence of int
-        Nodes of the supports that carry load.
-    laws : sequence of callable
-        One for each support: load (2,) [N] to displacement of the journal in the housing (2,) [m]
-        and its derivative (2, 2) [m/N].
-    elevations : (n, 2) array
-        Displacement of each housing along x and y [m]; upwards is -x.
-    start : (n, 2) array, optional
-        First guess of the loads [N].
+    force : (size,) array. Static forces on its unknowns [N].
+    nodes : Nodes of the supports that carry load.
+    laws : One for each support: load (2,) [N] to displacement of the journal in the housing (2,)
+        [m] and its derivative (2, 2) [m/N].
+    elevations : (n, 2) array. Displacement of each housing along x and y [m]; upwards is -x.
+    start : (n, 2) array. First guess of the loads [N].
+    Raises InputError: Fewer than two supports carry load.
 
-    Raises
-    ------
-    InputError
-        Fewer than two supports carry load.
-
-    Notes
-    -----
     Unknowns are the loads W. The rotor, held at the journals, gives loads R(u) = R0 - S u, u the
     journals' displacements; a support gives e(W). The residual W - R(e(W) + elevation) has the
     Jacobian I + S de/dW, and Newton's method is damped by halving.

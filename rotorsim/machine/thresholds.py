@@ -26,15 +26,9 @@ CRITICAL_DAMPING = 0.5**0.5
 class ThresholdSpeed:
     """Where the machine changes its verdict.
 
-    Attributes
-    ----------
-    speed : float
-        [rad/s]
-    whirl_frequency : float
-        Of the mode that crosses [rad/s]; 0 for a static divergence.
-    whirl_frequency_ratio : float
-    becomes_unstable : bool
-        With rising speed; False: it becomes stable.
+    speed : [rad/s]
+    whirl_frequency : Of the mode that crosses [rad/s]; 0 for a static divergence.
+    becomes_unstable : With rising speed; False: it becomes stable.
     """
 
     speed: float
@@ -47,21 +41,11 @@ class ThresholdSpeed:
 def find_thresholds(spectrum: Spectrum, speeds: Sequence[float] | Array) -> list[ThresholdSpeed]:
     """Speeds at which the least stable eigenvalue crosses the imaginary axis.
 
-    Parameters
-    ----------
-    spectrum : Spectrum
-        Modes at a speed [rad/s]; None marks one without coefficients.
-    speeds : sequence of float
-        Ascending; one crossing is found between two neighbours whose verdicts differ.
+    spectrum : Modes at a speed [rad/s]; None marks one without coefficients.
+    speeds : Ascending; one crossing is found between two neighbours whose verdicts differ.
+    Returns: Ascending, speed to a relative 1e-13 or as far as the eigenvalues are accurate. Empty:
+        one verdict everywhere.
 
-    Returns
-    -------
-    list of ThresholdSpeed
-        Ascending, speed to a relative 1e-13 or as far as the eigenvalues are accurate. Empty: one
-        verdict everywhere.
-
-    Notes
-    -----
     Modes whose real part is below their own accuracy are neither stable nor unstable, and count
     nowhere.
     """
@@ -122,11 +106,7 @@ def _leading(spectrum: Spectrum, speed: float) -> complex:
 def threshold_speeds(machine: Machine, subdivisions: int = 8) -> list[ThresholdSpeed]:
     """Threshold speeds of a machine on its supports' interpolated tables.
 
-    Parameters
-    ----------
-    machine : Machine
-    subdivisions : int
-        Points looked at in every interval of the tables.
+    subdivisions : Points looked at in every interval of the tables.
     """
     speeds = subdivided(machine.speeds, subdivisions)
     return find_thresholds(machine_spectrum(machine, speeds), speeds)
@@ -144,15 +124,9 @@ def subdivided(knots: Array, parts: int) -> Array:
 class CriticalSpeed:
     """Where a damped natural frequency equals the shaft speed.
 
-    Attributes
-    ----------
-    speed : float
-        [rad/s]
-    whirl : str
-        ``forward``, ``backward`` or ``mixed``.
-    damping_ratio : float
-    branch : int
-        Of the modes that were searched.
+    speed : [rad/s]
+    whirl : ``forward``, ``backward`` or ``mixed``.
+    branch : Of the modes that were searched.
     """
 
     speed: float
@@ -167,15 +141,8 @@ def critical_speeds(
 ) -> list[CriticalSpeed]:
     """Speeds at which a mode's damped frequency is `order` times the speed, ascending.
 
-    Parameters
-    ----------
-    machine : Machine
-    found : Modes, optional
-        Of this machine over speed, as dense as branches should be followed.
-    order : float
+    found : Of this machine over speed, as dense as branches should be followed.
 
-    Notes
-    -----
     One of each conjugate pair; modes so much damped (ratio above 0.707) that an unbalance response
     has no peak are left out. Crossings are refined to 1e-10 on the supports' interpolated tables.
     """

@@ -24,13 +24,8 @@ class SampleError(RotorsimError):
 class Tolerance:
     """Distribution of one input.
 
-    Attributes
-    ----------
-    nominal : float
-    spread : float
-        Half width of a uniform distribution, standard deviation of a normal one; above 0.
-    kind : {"uniform", "normal"}
-        A normal distribution is cut off at four standard deviations.
+    spread : Half width of a uniform distribution, standard deviation of a normal one; above 0.
+    kind : {"uniform", "normal"}. A normal distribution is cut off at four standard deviations.
     """
 
     nominal: float
@@ -60,12 +55,9 @@ class Tolerance:
 class Propagation:
     """Samples of inputs and what they lead to.
 
-    Attributes
-    ----------
-    inputs, outputs : mapping of str to (n,) array
-        NaN in an output: not defined for that sample (no threshold, say), or failed.
-    failures : tuple of (int, str)
-        Samples whose evaluation raised, and why.
+    inputs, outputs : mapping of str to (n,) array. NaN in an output: not defined for that sample
+        (no threshold, say), or failed.
+    failures : tuple of (int, str). Samples whose evaluation raised, and why.
     """
 
     inputs: Mapping[str, Array]
@@ -128,8 +120,6 @@ class Propagation:
         `explained_variance` about, not to 1: what is left are interactions of inputs and bends
         that a quadratic does not follow.
 
-        Notes
-        -----
         Least squares on a sum of one quadratic for each input (straight lines where there are fewer
         than three samples for each coefficient): a few coefficients are known well from some
         dozens of samples. What the scatter feigns is subtracted from each share. NaN with fewer
@@ -191,14 +181,9 @@ def sample_inputs(
 ) -> list[dict[str, float]]:
     """Draw `count` sets of inputs.
 
-    Parameters
-    ----------
-    tolerances : mapping of str to Tolerance
-    count : int
-        Sobol' sequences are balanced at powers of two; others are rounded up to one.
+    count : Sobol' sequences are balanced at powers of two; others are rounded up to one.
     method : {"sobol", "latin_hypercube"}
-    seed : int
-        The same seed draws the same samples.
+    seed : The same seed draws the same samples.
     """
     from scipy.stats import qmc
 
@@ -228,21 +213,11 @@ def propagate(
 ) -> Propagation:
     """Carry tolerances through `function`.
 
-    Parameters
-    ----------
-    function : callable
-        Inputs by name to outputs by name, for example ``threshold_speed`` [rad/s] and
+    function : Inputs by name to outputs by name, for example ``threshold_speed`` [rad/s] and
         ``critical_mass`` [kg]; None or NaN: not defined there. It must be picklable where `mapper`
         uses processes.
-    tolerances : mapping of str to Tolerance
-    count, method, seed
-        As for `sample_inputs`.
-    mapper : callable
-        ``map``, or the ``map`` of any executor.
-
-    Returns
-    -------
-    Propagation
+    count, method, seed : As for `sample_inputs`.
+    mapper : ``map``, or the ``map`` of any executor.
     """
     samples = sample_inputs(tolerances, count, method, seed)
     results = list(mapper(_Guarded(function), samples))

@@ -47,17 +47,10 @@ _LONGEST_PERIOD = 8
 class Recognition:
     """Verdict on a run's last part.
 
-    Attributes
-    ----------
-    status : OrbitStatus
-        ``settled``, ``periodic``, ``limit_cycle``, ``quasi_periodic`` or ``completed``.
-    message : str
-    steady_from : int or None
-        First sample of the steady part; None where there is none.
-    period : int or None
-        Of a periodic orbit, in turns of the shaft.
-    whirl_frequency_ratio : float or None
-        Of a steady whirl.
+    status : ``settled``, ``periodic``, ``limit_cycle``, ``quasi_periodic`` or ``completed``.
+    steady_from : First sample of the steady part; None where there is none.
+    period : Of a periodic orbit, in turns of the shaft.
+    whirl_frequency_ratio : Of a steady whirl.
     """
 
     status: OrbitStatus
@@ -70,8 +63,6 @@ class Recognition:
 def recognise(orbit: Orbit) -> Recognition:
     """Recognise what the second half of a run at constant speed has come to.
 
-    Notes
-    -----
     Amplitudes (root mean square about the mean) of the third and the last quarter are compared:
     steady means equal to 0.2 %. A steady orbit is periodic if the points at one shaft angle repeat
     within 0.2 % of the amplitude after 1 to 8 turns; else it whirls at a frequency of its own.
@@ -184,16 +175,10 @@ def _steady_from(orbit: Orbit, amplitude: float, known: int) -> int:
 class _WhirlRange:
     """Where a run through the speeds whirls below the shaft's frequency.
 
-    Attributes
-    ----------
-    first_speed, last_speed : float
-        Of the first and the last block of revolutions that whirls [rad/s].
-    strongest_speed : float
-        Where the whirl is largest [rad/s].
-    frequency : float
-        Of the whirl there [rad/s].
-    amplitude : float
-        Its major half axis there [m].
+    first_speed, last_speed : Of the first and the last block of revolutions that whirls [rad/s].
+    strongest_speed : Where the whirl is largest [rad/s].
+    frequency : Of the whirl there [rad/s].
+    amplitude : Its major half axis there [m].
     """
 
     first_speed: float
@@ -207,22 +192,13 @@ class _WhirlRange:
 class OrbitAnalysis:
     """What an orbit shows.
 
-    Attributes
-    ----------
-    recognition : Recognition or None
-        None where the speed varies.
-    growth : Growth or None
-        Of small motions at the start; None where there are too few of them.
-    amplitude : float
-        Half the largest extent along x or y, of the steady part where there is one [m].
-    whirl : Ellipse or None
-        Of a steady whirl, at its own frequency.
-    synchronous : Ellipse or None
-        Of the steady part, at the shaft's frequency; None where there is none.
-    min_film, min_film_time : float
-        Smallest film thickness and when [m, s].
-    whirl_range : _WhirlRange or None
-        In a run through the speeds.
+    recognition : None where the speed varies.
+    growth : Of small motions at the start; None where there are too few of them.
+    amplitude : Half the largest extent along x or y, of the steady part where there is one [m].
+    whirl : Of a steady whirl, at its own frequency.
+    synchronous : Of the steady part, at the shaft's frequency; None where there is none.
+    min_film, min_film_time : Smallest film thickness and when [m, s].
+    whirl_range : In a run through the speeds.
     """
 
     recognition: Recognition | None

@@ -45,17 +45,11 @@ _MIRRORED_ROWS = 8
 class ForceMap:
     """Impedance on a uniform grid of xi and gamma, as a bicubic B-spline (C2).
 
-    Attributes
-    ----------
-    coefficients : (2, rows + 2, columns + 3) array
-        Of asinh(k W/W_0), radial and tangential.
-    first, step, last : float
-        Of the radial coordinate xi; rows below 0 mirror the map through the centre, so that the
-        force is smooth there.
-    central : float
-        W_0, the impedance of the centred journal.
-    note : str
-        What a user should know of how the map came about.
+    coefficients : (2, rows + 2, columns + 3) array. Of asinh(k W/W_0), radial and tangential.
+    first, step, last : Of the radial coordinate xi; rows below 0 mirror the map through the centre,
+        so that the force is smooth there.
+    central : W_0, the impedance of the centred journal.
+    note : What a user should know of how the map came about.
     """
 
     coefficients: Array
@@ -94,27 +88,16 @@ class ForceMap:
     ) -> ForceMap:
         """Solve the film on the grid and spline it.
 
-        Parameters
-        ----------
-        impedance : callable
-            (eccentricity ratio, alpha) -> (radial, tangential), see `_Impedance`. With
+        impedance : (eccentricity ratio, alpha) -> (radial, tangential), see `_Impedance`. With
             `symmetric` it is called for alpha from 0 to pi only, row by row, alpha ascending: a
             film solver may start each call from the one before.
-        max_eccentricity_ratio : float
-            Of the last row.
-        rows : int
-            From eps = 0 on, equally spaced in xi.
-        columns : int
-            Over the whole turn, equally spaced in gamma; even.
-        symmetric : bool
-            Whether the bearing looks the same mirrored: plain, p = 0 at the ends and at inception.
-        progress : callable, optional
-            Called with rows done and rows in all.
-
-        Raises
-        ------
-        InputError
-            A grid that is too coarse, or a value that is not finite.
+        max_eccentricity_ratio : Of the last row.
+        rows : From eps = 0 on, equally spaced in xi.
+        columns : Over the whole turn, equally spaced in gamma; even.
+        symmetric : Whether the bearing looks the same mirrored: plain, p = 0 at the ends and at
+            inception.
+        progress : Called with rows done and rows in all.
+        Raises InputError: A grid that is too coarse, or a value that is not finite.
         """
         if not 0.0 < max_eccentricity_ratio < 1.0:
             raise InputError(
@@ -154,15 +137,9 @@ class ForceMap:
 class FilmMapForce:
     """An isoviscous film's force from its map.
 
-    Parameters
-    ----------
-    force_map : ForceMap
-        Of the bearing's L/D and cavitation condition.
-    viscosity : float
-        [Pa s]
-    length, radius, radial_clearance : float
-        [m]
-    name : str
+    force_map : Of the bearing's L/D and cavitation condition.
+    viscosity : [Pa s]
+    length, radius, radial_clearance : [m]
     """
 
     force_map: ForceMap

@@ -25,14 +25,11 @@ _NOISE = 1e-8
 class Modes:
     """Motion at constant speed as a sum of exponentials.
 
-    Attributes
-    ----------
-    eigenvalues : (k,) complex array
-        sigma + i Omega, Omega >= 0 [1/s, rad/s]; strongest first (by energy over the record).
-    amplitudes : (k, 2) complex array
-        Of x and y at the record's start [m].
-    synchronous : (k,) bool array
-        Steady response at 0, 1, 2 ... times the shaft's frequency: forced, not free.
+    eigenvalues : (k,) complex array. sigma + i Omega, Omega >= 0 [1/s, rad/s]; strongest first (by
+        energy over the record).
+    amplitudes : (k, 2) complex array. Of x and y at the record's start [m].
+    synchronous : (k,) bool array. Steady response at 0, 1, 2 ... times the shaft's frequency:
+        forced, not free.
     """
 
     eigenvalues: ComplexArray
@@ -44,16 +41,10 @@ class Modes:
 class Growth:
     """The free whirl that dominates a record.
 
-    Attributes
-    ----------
-    rate : float
-        [1/s], above 0 where it grows: the eigenvalue's real part.
-    frequency : float
-        [rad/s]: its imaginary part; 0 for a motion that only creeps.
-    whirl_frequency_ratio : float
-        Frequency over the shaft's.
-    forward : bool
-        Whether it turns with the shaft.
+    rate : [1/s], above 0 where it grows: the eigenvalue's real part.
+    frequency : [rad/s]: its imaginary part; 0 for a motion that only creeps.
+    whirl_frequency_ratio : Frequency over the shaft's.
+    forward : Whether it turns with the shaft.
     """
 
     rate: float
@@ -70,13 +61,8 @@ class Growth:
 def fit_modes(orbit: Orbit) -> Modes:
     """Fit exponentials to x, y, vx, vy with a matrix pencil.
 
-    Raises
-    ------
-    InputError
-        The speed varies, or there are too few samples.
+    Raises InputError: The speed varies, or there are too few samples.
 
-    Notes
-    -----
     Delayed samples of all four signals make a Hankel matrix; after truncation to its significant
     singular values the one-sample shift has the eigenvalues exp(lambda dt) (Hua & Sarkar 1990).
     The static position and the steady unbalance response are modes of zero growth among the rest:

@@ -27,14 +27,9 @@ _MAX_REVOLUTIONS = 256
 class Spectrum:
     """Amplitudes by order.
 
-    Attributes
-    ----------
-    order : (m,) array
-        Frequency over the shaft's, from 0.
-    frequency : (m,) array
-        [rad/s], at the record's mean speed.
-    forward, backward : (m,) arrays
-        Amplitudes of the circular parts [m].
+    order : (m,) array. Frequency over the shaft's, from 0.
+    frequency : (m,) array [rad/s], at the record's mean speed.
+    forward, backward : (m,) arrays. Amplitudes of the circular parts [m].
     """
 
     order: Array
@@ -47,15 +42,10 @@ class Spectrum:
 class Cascade:
     """Spectra over a run-up, one row for each block of revolutions.
 
-    Attributes
-    ----------
-    time, speed : (k,) arrays
-        Block means [s, rad/s].
+    time, speed : (k,) arrays. Block means [s, rad/s].
     order : (m,) array
-    amplitude : (k, m) array
-        Forward and backward together: the ellipse's major half axis [m].
-    frequency : (k, m) array
-        [rad/s]
+    amplitude : (k, m) array. Forward and backward together: the ellipse's major half axis [m].
+    frequency : (k, m) array [rad/s]
     """
 
     time: Array
@@ -73,13 +63,8 @@ class Cascade:
 class Ellipse:
     """The part of an orbit at one order: z = forward exp(i w t) + backward exp(-i w t).
 
-    Attributes
-    ----------
-    order : float
-    forward, backward : complex
-        Circular parts [m], phases against the shaft's angle.
-    center : (float, float)
-        Mean position [m].
+    forward, backward : Circular parts [m], phases against the shaft's angle.
+    center : (float, float). Mean position [m].
     """
 
     order: float
@@ -137,13 +122,8 @@ def spectrum(orbit: Orbit) -> Spectrum:
 def cascade(orbit: Orbit, revolutions: int = 16, overlap: float = 0.5) -> Cascade:
     """Spectra of successive blocks.
 
-    Parameters
-    ----------
-    orbit : Orbit
-    revolutions : int
-        In each block: orders are resolved to 1/revolutions.
-    overlap : float
-        Of neighbouring blocks, 0 to below 1.
+    revolutions : In each block: orders are resolved to 1/revolutions.
+    overlap : Of neighbouring blocks, 0 to below 1.
     """
     size = revolutions * orbit.samples_per_revolution
     hop = max(int(size * (1.0 - overlap)), 1)
@@ -168,14 +148,9 @@ def cascade(orbit: Orbit, revolutions: int = 16, overlap: float = 0.5) -> Cascad
 def whirl_frequency_ratio(orbit: Orbit) -> float | None:
     """Order of the strongest motion that is no multiple of the shaft's frequency.
 
-    Returns
-    -------
-    float or None
-        Positive for forward whirl, negative for backward; None where nothing but the static
+    Returns: Positive for forward whirl, negative for backward; None where nothing but the static
         position and harmonics of the shaft's frequency remains (below 1e-6 of the clearance).
 
-    Notes
-    -----
     The mean and the shaft's first four harmonics are fitted and removed, then the maximum of the
     continuous windowed transform is located: far finer than the distance of the lines.
     """

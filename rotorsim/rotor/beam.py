@@ -34,27 +34,15 @@ _UNKNOWNS = ("x", "y", "theta_x", "theta_y")
 class Beam:
     """A shaft with its discs, from its drawing (SI).
 
-    Parameters
-    ----------
-    sections : tuple of Section
-        Those of layer 1 follow one another from the left end.
-    discs : tuple of Disc
-    material : Material
-        Of sections without one of their own.
-    shear : bool
-        With False the beam is that of Rayleigh: rotary inertia without shear.
-    axial_force : float
-        Along the whole shaft, tension above 0 [N].
-    internal_damping : float
-        Viscous and rotating: force -b K_s (dr/dt - i Omega r) on r = x + i y [s].
-    clockwise : bool
-        Sense of rotation seen from the left end; z then runs from left to right, else from right
-        to left. It decides the signs of the slopes.
-
-    Raises
-    ------
-    InputError
-        There is no section, one overlaps another of its layer or leaves the shaft, or a disc does.
+    sections : Those of layer 1 follow one another from the left end.
+    material : Of sections without one of their own.
+    shear : With False the beam is that of Rayleigh: rotary inertia without shear.
+    axial_force : Along the whole shaft, tension above 0 [N].
+    internal_damping : Viscous and rotating: force -b K_s (dr/dt - i Omega r) on r = x + i y [s].
+    clockwise : Sense of rotation seen from the left end; z then runs from left to right, else from
+        right to left. It decides the signs of the slopes.
+    Raises InputError: There is no section, one overlaps another of its layer or leaves the shaft,
+        or a disc does.
     """
 
     sections: tuple[Section, ...]
@@ -123,15 +111,9 @@ class Beam:
     def mesh(self, places: Sequence[float] = (), refinement: int = 1) -> Array:
         """Nodes (n,) [m] from the left end: section ends, discs, `places`, and between them.
 
-        Parameters
-        ----------
-        places : sequence of float
-            Where a node is needed: supports, seals, probes, loads [m].
-        refinement : int
-            Number of parts into which every element is cut.
+        places : Where a node is needed: supports, seals, probes, loads [m].
+        refinement : Number of parts into which every element is cut.
 
-        Notes
-        -----
         Elements are shorter than the outer diameter of the section, and the shaft has 20 or more,
         unless a section says how many it has.
         """
@@ -168,10 +150,8 @@ class Beam:
     def properties(self, z: Array) -> tuple[Array, Array, Array, Array]:
         """Bending stiffness, shear stiffness, mass and rotary inertia per length at z (n,) [m].
 
-        Returns
-        -------
-        bending, shear, mass, inertia : (n,) arrays
-            E I [N m^2], kappa G A [N], rho A [kg/m], rho I [kg m]; sums over the layers.
+        Returns bending, shear, mass, inertia : (n,) arrays. E I [N m^2], kappa G A [N], rho A
+            [kg/m], rho I [kg m]; sums over the layers.
         """
         total = np.zeros((4, z.size))
         middle = float(np.mean(z))
@@ -209,19 +189,10 @@ def shear_coefficient(radius_ratio: float | Array, poisson_ratio: float) -> floa
 def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) -> Rotor:
     """Assemble the rotor of a shaft.
 
-    Parameters
-    ----------
-    beam : Beam
-    places : sequence of float
-        Where supports, seals, probes and loads need a node [m].
-    refinement : int
-        See `Beam.mesh`.
-
-    Returns
-    -------
-    Rotor
-        Unknowns x, y, theta_x = -dy/dz, theta_y = dx/dz at each node; its `bearing_nodes` are the
-        nodes at `places`, or the ends without them.
+    places : Where supports, seals, probes and loads need a node [m].
+    refinement : See `Beam.mesh`.
+    Returns: Unknowns x, y, theta_x = -dy/dz, theta_y = dx/dz at each node; its `bearing_nodes` are
+        the nodes at `places`, or the ends without them.
     """
     for place in places:
         beam.check_place(place, "rotor.places")
@@ -269,17 +240,11 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
 def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Array, Array, Array]:
     """Matrices (4, 4) of the element from `left` to `right` [m], in one plane.
 
-    Returns
-    -------
-    translation, rotation : arrays
-        Consistent mass of the translation and of the rotation (rotary inertia) [kg, kg m, kg m^2].
-    bending : array
-        Stiffness, shear included [N/m, N, N m].
-    tension : array
-        Geometric stiffness of a unit tension [1/m, 1, m].
+    Returns translation, rotation : Consistent mass of the translation and of the rotation (rotary
+        inertia) [kg, kg m, kg m^2].
+    Returns bending : Stiffness, shear included [N/m, N, N m].
+    Returns tension : Geometric stiffness of a unit tension [1/m, 1, m].
 
-    Notes
-    -----
     The unknowns are displacement and slope of the cross section at both ends. The shape functions
     are the exact static ones of a uniform Timoshenko beam, with Phi = 12 E I/(kappa G A l^2) at the
     element's middle; energies are integrated by Gauss' rule, which is exact for a uniform element
@@ -344,15 +309,9 @@ def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Arr
 def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: int) -> float:
     """Largest relative change of natural frequencies when every element is halved.
 
-    Parameters
-    ----------
-    beam : Beam
-    places : sequence of float
-        Nodes with a spring to ground each [m].
-    stiffness : float
-        Of each spring [N/m].
-    count : int
-        Number of frequencies looked at, the lowest ones, in one plane, without rotation.
+    places : Nodes with a spring to ground each [m].
+    stiffness : Of each spring [N/m].
+    count : Number of frequencies looked at, the lowest ones, in one plane, without rotation.
     """
     from scipy.linalg import eigh
 

@@ -28,14 +28,9 @@ _FREE = 1e-6
 class Node:
     """A place on the rotor that has unknowns.
 
-    Attributes
-    ----------
-    name : str
-        Prefix of its signals (``journal_force_x``); empty for the only node of a rigid rotor.
-    unknowns : tuple of str
-        ``x`` and ``y`` first; then ``theta_x`` = -dy/dz, ``theta_y`` = dx/dz, or others.
-    position : float
-        From the left end of the shaft [m]; NaN where it is not known.
+    name : Prefix of its signals (``journal_force_x``); empty for the only node of a rigid rotor.
+    unknowns : ``x`` and ``y`` first; then ``theta_x`` = -dy/dz, ``theta_y`` = dx/dz, or others.
+    position : From the left end of the shaft [m]; NaN where it is not known.
     """
 
     name: str = ""
@@ -50,30 +45,19 @@ class Rotor:
     The constructors are `rigid`, `rigid_body`, `jeffcott` and `from_matrices` here, and
     `rotorsim.rotor.beam_rotor` for a shaft from its drawing.
 
-    Attributes
-    ----------
-    mass, damping, gyroscopic, stiffness, circulatory : (n, n) arrays
-        SI. The unknowns are grouped by node. The gyroscopic and the circulatory matrix (internal,
-        rotating damping) are multiplied by the shaft speed [rad/s].
-    nodes : tuple of Node
-    unbalance : (n_nodes,) complex array
-        Mass times radius at each node, times exp(i phase), the phase ahead of the shaft's mark
-        [kg m].
-    bearing_nodes : tuple of int
-        Nodes, from 0, that identical bearings carry where a rotor meets a single bearing's table.
-    kind : str
-        ``rigid``, ``jeffcott``, ``matrices`` or ``beam``.
-    parameters : mapping of str to float
-        What the constructor was given, for reports (SI).
-    source : str or None
-        File of the matrices.
-
-    Raises
-    ------
-    InputError
-        A matrix is not real, square, finite or of the right size, the mass matrix is not symmetric
-        or negative, the gyroscopic matrix not skew, or a node does not exist; the message names row
-        and column.
+    mass, damping, gyroscopic, stiffness, circulatory : (n, n) arrays. SI. The unknowns are grouped
+        by node. The gyroscopic and the circulatory matrix (internal, rotating damping) are
+        multiplied by the shaft speed [rad/s].
+    unbalance : (n_nodes,) complex array. Mass times radius at each node, times exp(i phase), the
+        phase ahead of the shaft's mark [kg m].
+    bearing_nodes : Nodes, from 0, that identical bearings carry where a rotor meets a single
+        bearing's table.
+    kind : ``rigid``, ``jeffcott``, ``matrices`` or ``beam``.
+    parameters : What the constructor was given, for reports (SI).
+    source : File of the matrices.
+    Raises InputError: A matrix is not real, square, finite or of the right size, the mass matrix is
+        not symmetric or negative, the gyroscopic matrix not skew, or a node does not exist; the
+        message names row and column.
     """
 
     mass: Array
@@ -217,10 +201,7 @@ class Rotor:
     def node(self, place: int | str) -> int:
         """Number of a node given by its number or its name.
 
-        Raises
-        ------
-        InputError
-            There is no such node; the message lists the names.
+        Raises InputError: There is no such node; the message lists the names.
         """
         names = [node.name for node in self.nodes]
         if isinstance(place, str) and place in names:
@@ -234,13 +215,8 @@ class Rotor:
     def unbalance_force(self, speed: ArrayLike) -> ComplexArray:
         """Complex amplitudes (..., n) [N] of the unbalance forces, f = Re(F exp(i Omega t)).
 
-        Parameters
-        ----------
-        speed : array
-            [rad/s]
+        speed : [rad/s]
 
-        Notes
-        -----
         u Omega^2 (1, -i) at each node: the force turns from x to y.
         """
         force = np.zeros(self.size, dtype=complex)
@@ -276,14 +252,9 @@ class Rotor:
     ) -> Rotor:
         """Rigid symmetric shaft on two identical bearings, per bearing (Dal Eq. 21).
 
-        Parameters
-        ----------
-        mass : float
-            Per bearing [kg].
-        unbalance : float
-            Mass times radius, per bearing [kg m].
-        phase : float
-            Of the unbalance ahead of the shaft's mark [rad].
+        mass : Per bearing [kg].
+        unbalance : Mass times radius, per bearing [kg m].
+        phase : Of the unbalance ahead of the shaft's mark [rad].
         """
         above_zero("rotor", mass=mass)
         zero = np.zeros((2, 2))
@@ -303,14 +274,9 @@ class Rotor:
     ) -> Rotor:
         """Rigid body on two bearings; its nodes are the two journals.
 
-        Parameters
-        ----------
-        mass : float
-            Of the whole rotor [kg].
-        transverse_inertia, polar_inertia : float
-            About the centre of mass [kg m^2].
-        bearings : (float, float)
-            Positions of the journals along z from the centre of mass [m].
+        mass : Of the whole rotor [kg].
+        transverse_inertia, polar_inertia : About the centre of mass [kg m^2].
+        bearings : (float, float). Positions of the journals along z from the centre of mass [m].
         """
         above_zero("rotor", mass=mass, transverse_inertia=transverse_inertia)
         not_negative("rotor", polar_inertia=polar_inertia)
@@ -346,16 +312,11 @@ class Rotor:
 
         The nodes are ``journal`` and ``disc``.
 
-        Parameters
-        ----------
-        disc_mass, shaft_stiffness : float
-            Per bearing: half the disc [kg] and half the shaft's stiffness at mid-span [N/m].
-        journal_mass : float
-            What moves with one journal [kg]; may be zero.
-        disc_damping : float
-            External, on the disc, per bearing [N s/m].
-        unbalance : float
-            Of the disc, per bearing [kg m].
+        disc_mass, shaft_stiffness : Per bearing: half the disc [kg] and half the shaft's stiffness
+            at mid-span [N/m].
+        journal_mass : What moves with one journal [kg]; may be zero.
+        disc_damping : External, on the disc, per bearing [N s/m].
+        unbalance : Of the disc, per bearing [kg m].
         """
         above_zero("rotor", disc_mass=disc_mass, shaft_stiffness=shaft_stiffness)
         not_negative(
@@ -393,16 +354,11 @@ class Rotor:
     ) -> Rotor:
         """Rotor of matrices made elsewhere, its unknowns grouped by node.
 
-        Parameters
-        ----------
-        mass, stiffness, damping, gyroscopic, circulatory : (n, n) arrays
-            See `Rotor`; what is left out is zero. The mass matrix must be positive definite.
-        bearing_nodes : sequence of int
-            Nodes that a bearing carries, from 0.
-        unknowns_per_node : int
-            2 or more: x, y, then the node's others; 4 for beam elements.
-        source : str, optional
-            File of the matrices.
+        mass, stiffness, damping, gyroscopic, circulatory : (n, n) arrays. See `Rotor`; what is left
+            out is zero. The mass matrix must be positive definite.
+        bearing_nodes : Nodes that a bearing carries, from 0.
+        unknowns_per_node : 2 or more: x, y, then the node's others; 4 for beam elements.
+        source : File of the matrices.
         """
         m = np.asarray(mass)
         zero = np.zeros(m.shape)

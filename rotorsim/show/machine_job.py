@@ -25,12 +25,7 @@ def write_machine_figures(
 ) -> list[Path]:
     """Write every figure of a machine as PNG and SVG.
 
-    Parameters
-    ----------
-    results : mapping of str to MachineResult
-        By thermal model; modes and response are those of the last.
-    study : LateralStudy
-    folder : Path
+    results : By thermal model; modes and response are those of the last.
     """
     from .figures.style import save_figure
 

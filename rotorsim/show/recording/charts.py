@@ -37,12 +37,8 @@ _DARK = (25, 25, 30)
 class Chart:
     """Picture of a figure in a recording, and where data lie on it.
 
-    Attributes
-    ----------
-    entity, name : str
-        Where it lives in the recording, and what its view is called.
-    figure : Figure
-        Its first axes carry the data.
+    entity, name : Where it lives in the recording, and what its view is called.
+    figure : Its first axes carry the data.
     """
 
     entity: str

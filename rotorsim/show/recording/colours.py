@@ -22,18 +22,10 @@ ALARM = (255, 80, 60)
 def colours(values: ArrayLike, low: float, high: float, name: str = "viridis") -> NDArray[np.uint8]:
     """Colour each value.
 
-    Parameters
-    ----------
     values : array_like, any shape
-    low, high : float
-        Ends of the scale; values beyond take the end's colour, NaN is grey.
-    name : str
-        Of a Matplotlib colormap.
-
-    Returns
-    -------
-    (..., 4) array of uint8
-        Red, green, blue and full opacity.
+    low, high : Ends of the scale; values beyond take the end's colour, NaN is grey.
+    name : Of a Matplotlib colormap.
+    Returns (..., 4) array of uint8: Red, green, blue and full opacity.
     """
     table = mpl.colormaps[name].with_extremes(bad="#808080")
     span = high - low if high > low else 1.0

@@ -20,22 +20,14 @@ if TYPE_CHECKING:
 class RecordingContents:
     """Everything that one recording shows; what is empty leaves its view out.
 
-    Attributes
-    ----------
-    title, summary : str
-        The summary in Markdown.
-    kind : str
-        Of the scenario's orbit (``run_up``, ``step``, ...): decides what the overview shows. Empty:
-        the whole job, from film to map.
-    orbits : tuple of Orbit
-    films : tuple of FilmFrame
-        Frames of one thermal model form one animation.
-    modes : tuple of Campbell
-        Of the rotor over speed.
-    maps : tuple of xarray.Dataset
-        Stability maps over speed and mass (see `rotorsim.machine.map.StabilityMap.plane`).
-    rotor_mass : float or None
-        Per bearing [kg]: height of the moving point on the maps.
+    title, summary : The summary in Markdown.
+    kind : Of the scenario's orbit (``run_up``, ``step``, ...): decides what the overview shows.
+        Empty: the whole job, from film to map.
+    films : Frames of one thermal model form one animation.
+    modes : Of the rotor over speed.
+    maps : tuple of xarray.Dataset. Stability maps over speed and mass (see
+        `rotorsim.machine.map.StabilityMap.plane`).
+    rotor_mass : Per bearing [kg]: height of the moving point on the maps.
     """
 
     title: str

@@ -59,11 +59,7 @@ FRONTS = {
 def layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint:
     """Blueprint of a recording.
 
-    Parameters
-    ----------
-    contents : RecordingContents
-    page : str
-        One of `_PAGES`: the one shown first.
+    page : One of `_PAGES`: the one shown first.
     """
     pages = [
         built

@@ -27,17 +27,9 @@ _PORT = 9876
 class LiveView:
     """A running viewer to which pieces of orbits are sent.
 
-    Parameters
-    ----------
-    title : str
-    stream : rerun.RecordingStream, optional
-        Already connected (or writing to a file). Default: a viewer on this computer, started if
-        none is open.
-
-    Raises
-    ------
-    InputError
-        There is no display, or the installed rerun-sdk has no viewer.
+    stream : Already connected (or writing to a file). Default: a viewer on this computer, started
+        if none is open.
+    Raises InputError: There is no display, or the installed rerun-sdk has no viewer.
     """
 
     def __init__(self, title: str, stream: rr.RecordingStream | None = None) -> None:

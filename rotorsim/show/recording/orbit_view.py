@@ -73,11 +73,7 @@ def zoom_reach(runs: Sequence[Run]) -> float:
 def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
     """View of one run with the trail of the last turns.
 
-    Parameters
-    ----------
-    run : Run
-    zoom : float, optional
-        Half-width of a close-up about the static position [m]; else the whole clearance circle.
+    zoom : Half-width of a close-up about the static position [m]; else the whole clearance circle.
     """
     root = _orbit_entity(run.name)
     reach = (1.32 * run.reach if zoom is None else zoom) * MICRO

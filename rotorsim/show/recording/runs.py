@@ -115,18 +115,9 @@ def send_run(
 def frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[_Indices, _Indices]:
     """When a run passes from one tabulated speed to the next.
 
-    Parameters
-    ----------
-    run : Run
-    frame_speeds : array_like (k,)
-        Tabulated speeds [rad/s].
-
-    Returns
-    -------
-    rows : (j,) array
-        Samples at which another frame becomes the nearest; the first is 0.
-    frames : (j,) array
-        The frame that is nearest from there on.
+    frame_speeds : array_like (k,). Tabulated speeds [rad/s].
+    Returns rows : (j,) array. Samples at which another frame becomes the nearest; the first is 0.
+    Returns frames : (j,) array. The frame that is nearest from there on.
     """
     known = np.asarray(frame_speeds, dtype=float)
     candidates = thin(run.samples, 5_000)
@@ -140,18 +131,10 @@ def indices_of_frames(
 ) -> list[tuple[list[rr.TimeColumn], _Indices]]:
     """Where the frames of one model stand on every timeline.
 
-    Parameters
-    ----------
-    runs : sequence of Run
-        The run of the frames' name places them in time; else the first one; else none.
-    frames : sequence of FilmFrame
-        Those at rest by ascending speed, then those of the run by ascending time. Without the
+    runs : The run of the frames' name places them in time; else the first one; else none.
+    frames : Those at rest by ascending speed, then those of the run by ascending time. Without the
         latter the frame of the nearest speed stands for the run.
-
-    Returns
-    -------
-    list of (index columns, frame numbers)
-        One entry to send per set of timelines.
+    Returns list of (index columns, frame numbers): One entry to send per set of timelines.
     """
     known = np.array([frame.speed for frame in frames if frame.time is None])
     times = np.array([frame.time for frame in frames if frame.time is not None])

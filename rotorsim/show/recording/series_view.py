@@ -31,14 +31,9 @@ _WINDOW_REVOLUTIONS = 20.0
 class Series:
     """One plot.
 
-    Attributes
-    ----------
-    entity, title : str
-        Both with the unit.
-    values : callable
-        Orbit -> (n,) array, or (n, 2) for x and y, in that unit; None where the run has none.
-    low, high : float, optional
-        Vertical range that holds for every run; what is left open follows the data.
+    entity, title : Both with the unit.
+    values : Orbit -> (n,) array, or (n, 2) for x and y, in that unit; None where the run has none.
+    low, high : Vertical range that holds for every run; what is left open follows the data.
     """
 
     entity: str
@@ -54,16 +49,9 @@ def whirl_ratio(orbit: Orbit, revolutions: float = 4.0) -> Array:
     The velocity turns as often as the journal goes round, wherever the orbit's centre is: that
     moves in a run through the speeds.
 
-    Parameters
-    ----------
-    orbit : Orbit
-    revolutions : float
-        Averaged over this many turns of the shaft, centred.
-
-    Returns
-    -------
-    (n,) array
-        [-]; negative for backward whirl. NaN where the journal or the shaft stands still.
+    revolutions : Averaged over this many turns of the shaft, centred.
+    Returns (n,) array: [-]; negative for backward whirl. NaN where the journal or the shaft stands
+        still.
     """
     turns, count = orbit.revolutions, orbit.t.size
     if not np.all(np.diff(turns) > 0.0) or count < 4:

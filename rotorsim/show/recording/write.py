@@ -26,27 +26,12 @@ def write_recording(
 ) -> Path:
     """Write a recording for the rerun viewer.
 
-    Parameters
-    ----------
-    path : str or Path
-        Ends in ``.rrd``, usually ``logs/NAME.rrd``; missing folders are made. An existing file is
-        replaced only once the new one is whole.
-    contents : RecordingContents
-    page : str
-        The page shown first, one of `rotorsim.show.recording.layout`.
+    path : str or Path. Ends in ``.rrd``, usually ``logs/NAME.rrd``; missing folders are made. An
+        existing file is replaced only once the new one is whole.
+    page : The page shown first, one of `rotorsim.show.recording.layout`.
+    Returns: The file written.
+    Raises InputError: The path does not end in ``.rrd``.
 
-    Returns
-    -------
-    Path
-        The file written.
-
-    Raises
-    ------
-    InputError
-        The path does not end in ``.rrd``.
-
-    Notes
-    -----
     Nothing is sent anywhere: the stream writes to the file alone. Two identical runs give files
     that differ in their time stamps only (``rerun rrd compare --unordered`` says so).
     """
