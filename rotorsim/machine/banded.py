@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class BandForm:
     """Order of the unknowns in which matrices have a narrow band.
+
+    A band is (..., 2 width + 1, n), its entries where `scipy.linalg.solve_banded` has them.
 
     Attributes
     ----------
@@ -43,11 +44,39 @@ class BandForm:
         """Whether the band is worth while."""
         return 6 * self.width < self.place.size
 
-    def pack(self, matrix: Array) -> Array:
-        """Band (..., 2 width + 1, n) of (..., n, n) matrices, as `scipy.linalg.solve_banded`."""
-        row, column = np.nonzero(np.any(matrix != 0.0, axis=tuple(range(matrix.ndim - 2))))
+    def entry(
+        self, row: NDArray[np.intp], column: NDArray[np.intp]
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Indices in a band of the entries of a matrix."""
         i, j = self.place[row], self.place[column]
-        shape = (*matrix.shape[:-2], 2 * self.width + 1, self.place.size)
-        band = np.zeros(shape, dtype=matrix.dtype)
-        band[..., self.width + i - j, j] = matrix[..., row, column]
+        return self.width + i - j, j
+
+    def pack(self, matrix: NDArray[Any]) -> NDArray[Any]:
+        """Band of an (n, n) matrix."""
+        row, column = np.nonzero(matrix)
+        band = np.zeros((2 * self.width + 1, self.place.size), dtype=matrix.dtype)
+        band[self.entry(row, column)] = matrix[row, column]
         return band
+
+    def factors(self, band: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.intc]]:
+        """LU factors (3 width + 1, n) of LAPACK's ``gbtrf`` and its pivots."""
+        from scipy.linalg import get_lapack_funcs
+
+        (factor,) = get_lapack_funcs(("gbtrf",), (band,))
+        wide = np.zeros((3 * self.width + 1, self.place.size), dtype=band.dtype, order="F")
+        wide[self.width :] = band
+        lu, pivots, _ = factor(wide, self.width, self.width, overwrite_ab=True)
+        return lu, pivots
+
+    def solve(self, band: NDArray[Any], right: NDArray[Any], trans: int = 0) -> NDArray[Any]:
+        """Solve with the matrix of a band, or with its transposed (`trans` = 1), for (n,).
+
+        The right-hand side and the solution are in the matrix' own order.
+        """
+        from scipy.linalg import get_lapack_funcs
+
+        lu, pivots = self.factors(band)
+        (solve,) = get_lapack_funcs(("gbtrs",), (lu,))
+        ordered = np.empty(right.size, dtype=np.result_type(band, right))
+        ordered[self.place] = right
+        return solve(lu, self.width, self.width, ordered, pivots, trans=trans)[0][self.place]

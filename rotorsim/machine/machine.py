@@ -123,7 +123,8 @@ class Machine:
     @property
     def size(self) -> int:
         """Number of unknowns."""
-        return len(self.unknowns)
+        own = (len(mount.support.unknowns) - mount.support.coupled for mount in self.mounts)
+        return self.rotor.size + sum(own)
 
     @property
     def frequency_dependent(self) -> bool:
@@ -168,6 +169,31 @@ class Machine:
         for place in self._places:
             pattern[place[:, None], place] = True
         return BandForm.of(pattern)
+
+    @cached_property
+    def _rotor_bands(self) -> dict[str, Array]:
+        whole = np.zeros((self.size, self.size))
+        bands, n = {}, self.rotor.size
+        for name in MATRICES:
+            whole[:n, :n] = getattr(self.rotor, name)
+            bands[name] = self.band_form.pack(whole)
+        return bands
+
+    def banded(self, speed: ArrayLike) -> Matrices:
+        """Return `matrices` in band form, each speed.shape + (2 width + 1, n)."""
+        omega = np.asarray(speed, dtype=float)
+        turning = omega[..., None, None]
+        rotor, form = self._rotor_bands, self.band_form
+        m = np.broadcast_to(rotor["mass"], (*omega.shape, *rotor["mass"].shape)).copy()
+        d = rotor["damping"] + turning * rotor["gyroscopic"]
+        k = rotor["stiffness"] + turning * rotor["circulatory"]
+        for mount, place in zip(self.mounts, self._places, strict=True):
+            stiffness, damping, mass = mount.support.matrices(omega)
+            entry = (..., *form.entry(place[:, None], place))
+            k[entry] += stiffness
+            d[entry] += damping
+            m[entry] += mass
+        return m, d, k
 
     def state_matrix(self, speed: ArrayLike) -> Array:
         """State matrix on the displacements, then the velocities of the unknowns with mass.

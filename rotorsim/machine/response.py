@@ -73,8 +73,8 @@ def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> Unba
     if not np.any(machine.rotor.unbalance):
         raise InputError("is missing: the rotor has none", key="rotor.unbalance")
     omega = machine.speeds if speed is None else np.atleast_1d(np.asarray(speed, dtype=float))
-    force = np.zeros((omega.size, machine.size, 1), dtype=complex)
-    force[:, : machine.rotor.size, 0] = machine.rotor.unbalance_force(omega)
+    force = np.zeros((omega.size, machine.size), dtype=complex)
+    force[:, : machine.rotor.size] = machine.rotor.unbalance_force(omega)
     amplitude = np.full((omega.size, machine.size), np.nan, dtype=complex)
     for start in range(0, omega.size, _AT_ONCE):
         part = slice(start, start + _AT_ONCE)
@@ -83,26 +83,17 @@ def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> Unba
 
 
 def _solve(machine: Machine, omega: Array, force: ComplexArray) -> ComplexArray:
-    """Amplitudes (n, size) at speeds (n,) under forces (n, size, 1); NaN: not known."""
-    from scipy.linalg import solve_banded
-
-    w, form = omega[:, None, None], machine.band_form
-    narrow = form.narrow and not machine.frequency_dependent
-    if machine.frequency_dependent:
+    """Amplitudes (n, size) at speeds (n,) under forces (n, size); NaN: not known."""
+    form = machine.band_form
+    found = np.full(force.shape, np.nan, dtype=complex)
+    if machine.frequency_dependent or not form.narrow:
         z = np.array([machine.dynamic_stiffness(1j * one, float(one)) for one in omega])
-    else:
-        parts = machine.matrices(omega)
-        mass, damping, stiffness = map(form.pack, parts) if narrow else parts
-        z = stiffness + 1j * w * damping - w**2 * mass
-    known = np.isfinite(z).all(axis=(-2, -1))
-    found = np.full((omega.size, machine.size), np.nan, dtype=complex)
-    if not narrow:
-        found[known] = np.linalg.solve(z[known], force[known])[..., 0]
+        known = np.isfinite(z).all(axis=(-2, -1))
+        found[known] = np.linalg.solve(z[known], force[known][..., None])[..., 0]
         return found
-    width = (form.width, form.width)
-    for i in np.flatnonzero(known):
-        right = np.empty(machine.size, dtype=complex)
-        right[form.place] = force[i, :, 0]
-        solved = solve_banded(width, z[i], right, overwrite_ab=True, check_finite=False)
-        found[i] = solved[form.place]
+    w = omega[:, None, None]
+    mass, damping, stiffness = machine.banded(omega)
+    z = stiffness - w**2 * mass + 1j * w * damping
+    for i in np.flatnonzero(np.isfinite(z).all(axis=(-2, -1))):
+        found[i] = form.solve(z[i], force[i])
     return found

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .banded import BandForm
 from .machine import Machine
-from .matrices import first_order
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -22,7 +23,7 @@ _DENSE = 48
 """Unknowns up to which all eigenvalues are computed."""
 _BLOCK = 2
 """Vectors that the Krylov space grows by: two planes make double eigenvalues."""
-_EXTRA = 24
+_EXTRA = 16
 """Size of the Krylov space beyond twice the number of eigenvalues that are wanted."""
 _SHIFT = 3e-4
 """Of the highest frequency: the least shift."""
@@ -99,14 +100,11 @@ class MachineSpectrum:
 
     def __call__(self, speed: float, /) -> Eigenmodes | None:
         """Modes at one speed [rad/s]."""
-        mass, damping, stiffness = self.machine.matrices(speed)
-        if not (np.all(np.isfinite(stiffness)) and np.all(np.isfinite(damping))):
-            return None
         if self.complete:
-            found = all_eigenmodes(first_order(mass, damping, stiffness)[0], self.machine.size)
+            found = MatrixSpectrum(self.machine.state_matrix, self.machine.size)(speed)
         else:
-            found = lowest_eigenmodes(mass, damping, stiffness, self.count, abs(speed))
-        if not self.machine.frequency_dependent:
+            found = lowest_eigenmodes(self.machine, self.count, speed)
+        if found is None or not self.machine.frequency_dependent:
             return found
         return _at_their_frequencies(self.machine, speed, found)
 
@@ -133,23 +131,17 @@ def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:
     return Eigenmodes(values.astype(complex), accuracy, _of_unit_length(shapes))
 
 
-def lowest_eigenmodes(
-    mass: Array,
-    damping: Array,
-    stiffness: Array,
-    count: int,
-    speed: float = 0.0,
-) -> Eigenmodes:
-    """Lowest modes of M q'' + D q' + K q = 0: 2 `count` or a few more, ascending in modulus.
+def lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes | None:
+    """Lowest modes of a machine: 2 `count` or a few more, ascending in modulus; None: not known.
 
     Parameters
     ----------
-    mass, damping, stiffness : (n, n) arrays
+    machine : Machine
         Unknowns without mass or damping are allowed.
     count : int
         Pairs of eigenvalues.
     speed : float
-        About the frequency of interest [rad/s]; 0: none.
+        [rad/s]
 
     Notes
     -----
@@ -157,28 +149,36 @@ def lowest_eigenmodes(
     speed, or a small part of the highest frequency, so that a free rotor's zero eigenvalues are
     regular. Masses are scaled to 1 and time to the shift. A mode counts where its relative residual
     is below 1e-11; the space grows until enough do. The accuracy is that of the matrices' entries:
-    with left eigenvector y, |y|' (|K| + |s| |D| + |s|^2 |M|) |x| roundings over |y' (2 s M + D) x|.
+    with left eigenvector y, |y|' (|K| + |s| |D| + |s|^2 |M|) |x| roundings over |y' (2 s M + D) x|,
+    plus that of the Ritz value.
     """
-    n = mass.shape[0]
-    diagonal = np.abs(np.diag(mass))
+    form = machine.band_form
+    mass, damping, stiffness = machine.banded(speed)
+    if not (np.all(np.isfinite(stiffness)) and np.all(np.isfinite(damping))):
+        return None
+    n, w = machine.size, form.width
+    diagonal = np.abs(mass[w])
     heavy = diagonal > 0.0
     scale = 1.0 / np.sqrt(np.where(heavy, diagonal, 1.0))
-    scaled = (scale[:, None] * scale * stiffness)[heavy][:, heavy]
-    highest = np.sqrt(np.linalg.norm(scaled))
-    rate = max(speed, _SHIFT * float(highest))
-    light = np.abs(np.diag(stiffness)) + rate * np.abs(np.diag(damping))
+    # A band's entry (w + i - j, j) belongs to row i.
+    row = np.clip(np.arange(n) + np.arange(-w, w + 1)[:, None], 0, n - 1)
+    both = scale[row] * scale
+    highest = np.sqrt(np.linalg.norm(both * stiffness * (heavy[row] & heavy)))
+    rate = max(abs(speed), _SHIFT * float(highest))
+    light = np.abs(stiffness[w]) + rate * np.abs(damping[w])
     scale = np.where(heavy, scale, rate / np.sqrt(np.where(light > 0.0, light, 1.0)))
-    both = scale[:, None] * scale
-    m, d, k = both * mass, both * damping / rate, both * stiffness / rate**2
+    both = scale[row] * scale
+    pencil = _Pencil(form, both * mass, both * damping / rate, both * stiffness / rate**2)
     most = 2 * n - _BLOCK
-    krylov = _Krylov(m, d, k, most)
+    krylov = _Krylov(pencil, most)
     size = min(4 * count + _EXTRA, most)
     while True:
-        values, vectors, residual = krylov.ritz(size)
+        inverse, small, residual = krylov.ritz(size)
         good = residual < _CONVERGED
         if good.sum() >= 2 * count or size >= most:
             break
-        size = min(size + _EXTRA, most)
+        size = min(size + _EXTRA // 2, most)
+    values: ComplexArray = np.asarray(1.0 / inverse - 1.0, dtype=complex)
     # Complete is what lies nearer to the shift than any eigenvalue not yet found.
     reach = np.abs(values[~good] + 1.0).min(initial=np.inf) - 1.0
     keep = np.flatnonzero(good)
@@ -186,90 +186,106 @@ def lowest_eigenmodes(
     last = max(2 * count, int(np.sum(np.abs(values[keep]) <= reach)))
     if last < keep.size and np.isclose(values[keep[last]], values[keep[last - 1]].conj()):
         last += 1
+    # The other half are their conjugates.
     keep = keep[:last]
-    values, x = values[keep], vectors[:n, keep]
-    accuracy = _accuracy(m, d, k, values, x)
-    return Eigenmodes(rate * values, rate * accuracy, _of_unit_length((scale[:, None] * x).T))
+    keep = keep[values[keep].imag >= 0.0]
+    values, x = values[keep], krylov.vectors(small[:, keep])
+    half = keep.size
+    accuracy = pencil.accuracy(values, x) + _ROUNDINGS * residual[keep] * np.abs(values + 1.0)
+    shapes = _of_unit_length(x.T * scale)[:, form.place]
+    order = np.concatenate([np.arange(half), np.flatnonzero(values.imag > 0.0)])
+    values = np.asarray(rate * values[order], dtype=complex)
+    shapes = shapes[order]
+    for mirrored in (values[half:], shapes[half:]):
+        np.conjugate(mirrored, out=mirrored)
+    found = Eigenmodes(values, rate * accuracy[order], shapes)
+    return found.taken(np.argsort(np.abs(values), kind="stable"))
+
+
+@dataclass(frozen=True)
+class _Pencil:
+    """s^2 M + s D + K, its matrices in band form."""
+
+    form: BandForm
+    mass: Array
+    damping: Array
+    stiffness: Array
+
+    def at(self, s: complex) -> NDArray[Any]:
+        """Band at a number s."""
+        return self.stiffness + s * self.damping + s * s * self.mass
+
+    def accuracy(self, values: ComplexArray, x: ComplexArray) -> Array:
+        """Bound of the error of eigenvalues with right eigenvectors x, in columns.
+
+        The right eigenvector stands for the left one where it is one (modes that nothing damps),
+        and where the bound does not matter because the real part is large.
+        """
+        from ._band_kernels import times
+
+        m, d, k = self.mass, self.damping, self.stiffness
+        size, moving = np.abs(values), np.abs(x)
+        entries = times(np.abs(k), moving, False) + size * times(np.abs(d), moving, False)
+        entries += size**2 * times(np.abs(m), moving, False)
+        mx, dx = times(m, x, False), times(d, x, False)
+        y = np.array(x)
+        for i in np.flatnonzero(np.abs(values.real) < 1e-5 * size):
+            s, vector = values[i].conj(), x[:, i : i + 1]
+            adjoint = times(k, vector, True) + s * times(d, vector, True)
+            adjoint += s * s * times(m, vector, True)
+            if np.linalg.norm(adjoint) > _SELF_ADJOINT * np.linalg.norm(entries[:, i]):
+                # One step of inverse iteration beside the eigenvalue.
+                band, right = self.at(s * (1.0 + 1e-9)), mx[self.form.place, i]
+                vector = self.form.solve(band, right, trans=1)
+                y[self.form.place, i] = vector / np.linalg.norm(vector)
+        rounding = _ROUNDINGS * np.finfo(float).eps * np.sum(np.abs(y) * entries, axis=0)
+        tiny = np.finfo(float).tiny
+        first = np.abs(np.sum(y.conj() * (2.0 * values * mx + dx), axis=0))
+        second = np.abs(np.sum(y.conj() * mx, axis=0))
+        # A double eigenvalue's error is the square root of the perturbation.
+        return np.minimum(
+            rounding / np.maximum(first, tiny), np.sqrt(rounding / np.maximum(second, tiny))
+        )
 
 
 class _Krylov:
     """Krylov space of the shifted inverse of [[0, 1], [-K, -D]] - s [[1, 0], [0, M]], s = -1."""
 
-    def __init__(self, m: Array, d: Array, k: Array, most: int) -> None:
-        from scipy.linalg import lu_factor
-
-        self.m, self.slope = m, d - m
-        self.factors = lu_factor(k - d + m, check_finite=False)
-        start = np.random.default_rng(0).standard_normal((2 * m.shape[0], _BLOCK))
-        self.basis = np.zeros((2 * m.shape[0], most + _BLOCK), order="F")
-        self.basis[:, :_BLOCK] = np.linalg.qr(start)[0]
+    def __init__(self, pencil: _Pencil, most: int) -> None:
+        lu, pivots = pencil.form.factors(pencil.at(-1.0))
+        near, far = pencil.mass - pencil.damping, -pencil.mass
+        self.operator = lu.T, pivots, np.ascontiguousarray(near.T), np.ascontiguousarray(far.T)
+        self.n = pencil.mass.shape[1]
+        self.basis = np.zeros((most + _BLOCK, 2 * self.n))
+        self.basis[:_BLOCK] = _start(2 * self.n)
         self.hessenberg = np.zeros((most + _BLOCK, most))
         self.size = 0
 
-    def _grow(self) -> None:
-        """One more block: A V = V H, orthogonalised twice."""
-        from scipy.linalg import lu_solve
-
-        n, size = self.m.shape[0], self.size + _BLOCK
-        last, basis = self.basis[:, self.size : size], self.basis[:, :size]
-        force = self.m @ last[n:] + self.slope @ last[:n]
-        q = -lu_solve(self.factors, force, check_finite=False)
-        block = np.concatenate([q, last[:n] - q])
-        column = basis.T @ block
-        block -= basis @ column
-        again = basis.T @ block
-        block -= basis @ again
-        new, rest = np.linalg.qr(block)
-        self.basis[:, size : size + _BLOCK] = new
-        self.hessenberg[:size, self.size : size] = column + again
-        self.hessenberg[size : size + _BLOCK, self.size : size] = rest
-        self.size = size
-
     def ritz(self, size: int) -> tuple[ComplexArray, ComplexArray, Array]:
-        """Eigenvalues, vectors in columns, and relative residuals from a space of `size`."""
-        while self.size < size:
-            self._grow()
-        size = self.size
+        """Eigenvalues of the inverse, vectors over the basis, and relative residuals."""
+        from ._band_kernels import expand
+
+        lu, pivots, near, far = self.operator
+        expand(lu, pivots, near, far, self.basis, self.hessenberg, self.size, size)
+        self.size = size
         inverse, small = np.linalg.eig(self.hessenberg[:size, :size])
         rest = self.hessenberg[size : size + _BLOCK, size - _BLOCK : size]
         residual = np.linalg.norm(rest @ small[-_BLOCK:], axis=0)
         there = np.abs(inverse) > np.finfo(float).eps * np.abs(inverse).max()
         inverse, small, residual = inverse[there], small[:, there], residual[there]
-        values = (1.0 / inverse - 1.0).astype(complex)
-        return values, _times(self.basis[:, :size], small), residual / np.abs(inverse)
+        return inverse.astype(complex), small, residual / np.abs(inverse)
+
+    def vectors(self, small: ComplexArray) -> ComplexArray:
+        """Displacements of vectors over the basis."""
+        basis = self.basis[: self.size, : self.n].T
+        return basis @ small.real + 1j * (basis @ small.imag)
 
 
-def _times(real: Array, vectors: ComplexArray) -> ComplexArray:
-    """Real matrix times complex columns, without a complex copy of the matrix."""
-    return real @ vectors.real + 1j * (real @ vectors.imag)
-
-
-def _accuracy(m: Array, d: Array, k: Array, values: ComplexArray, x: ComplexArray) -> Array:
-    """Bound of the error of eigenvalues with right eigenvectors x, in columns.
-
-    The right eigenvector stands for the left one where it is one (modes that nothing damps), and
-    where the bound does not matter because the real part is large.
-    """
-    size, moving = np.abs(values), np.abs(x)
-    entries = np.abs(k) @ moving + size * (np.abs(d) @ moving) + size**2 * (np.abs(m) @ moving)
-    mx, dx = _times(m, x), _times(d, x)
-    y = np.array(x)
-    for i in np.flatnonzero(np.abs(values.real) < 1e-5 * size):
-        s, vector = values[i].conj(), x[:, i]
-        adjoint = k.T @ vector + s * (d.T @ vector) + s * s * (m.T @ vector)
-        if np.linalg.norm(adjoint) > _SELF_ADJOINT * np.linalg.norm(entries[:, i]):
-            # One step of inverse iteration beside the eigenvalue.
-            s = s * (1.0 + 1e-9)
-            vector = np.linalg.solve((k + s * d + s * s * m).T, mx[:, i])
-            y[:, i] = vector / np.linalg.norm(vector)
-    rounding = _ROUNDINGS * np.finfo(float).eps * np.sum(np.abs(y) * entries, axis=0)
-    tiny = np.finfo(float).tiny
-    first = np.abs(np.sum(y.conj() * (2.0 * values * mx + dx), axis=0))
-    second = np.abs(np.sum(y.conj() * mx, axis=0))
-    # A double eigenvalue's error is the square root of the perturbation.
-    return np.minimum(
-        rounding / np.maximum(first, tiny), np.sqrt(rounding / np.maximum(second, tiny))
-    )
+@cache
+def _start(size: int) -> Array:
+    """First orthonormal vectors of a Krylov space."""
+    random = np.random.default_rng(0).standard_normal((size, _BLOCK))
+    return np.asarray(np.linalg.qr(random)[0].T)
 
 
 def _at_their_frequencies(machine: Machine, speed: float, start: Eigenmodes) -> Eigenmodes:

@@ -126,8 +126,8 @@ class _Follower:
         inner = np.minimum(np.abs(old.values[row]), np.abs(new.values[column])) <= limit
         alike = np.array(
             [
-                max(mac[i, j], _likeness(old, i, new.shapes[j])) > _SMOOTH_MAC
-                and change[i, j] < _SMOOTH_CHANGE
+                change[i, j] < _SMOOTH_CHANGE
+                and (mac[i, j] > _SMOOTH_MAC or _likeness(old, i, new.shapes[j]) > _SMOOTH_MAC)
                 for i, j in zip(row[inner], column[inner], strict=True)
             ]
         )
