@@ -31,8 +31,7 @@ from ..film.solution import FilmSolution
 from ..model import Bearing, pad_inertia
 from ..status import Stability
 from .operating_point import FrequencyCoefficients, FullCoefficients, condensed
-from .stored_oil import FrequencyScan
-from .whirl import WhirlThreshold, rigid_threshold, routh_coefficients
+from .whirl import FrequencyScan, WhirlThreshold, rigid_threshold, routh_coefficients
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -108,7 +108,7 @@ def orbit(
 
 
 def _check_mp4(wanted: bool) -> None:
-    from ..show.figures.animation import can_write_mp4
+    from ..show.figures.orbits import can_write_mp4
 
     if wanted and not can_write_mp4():
         raise InputError(

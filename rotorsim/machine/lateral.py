@@ -8,16 +8,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..bearing.drawing import STANDARD_GRAVITY
 from ..model.machine import Clearance
+from ..rotor import Rotor, with_unbalance
 from ..rows import RPM
+from .branches import Modes
 from .destabilising import DecrementCurve
+from .machine import Machine
 from .peaks import Peak, ProbeResponse, node_at
 from .response import UnbalanceResponse
+from .thresholds import critical_speeds
 
 Array = NDArray[np.float64]
 
@@ -87,7 +92,7 @@ def separation_margin(speed: float, continuous: tuple[float, float]) -> float:
     return max(0.0, (speed - high) / high)
 
 
-def margin_check(peak: Peak, place: str, continuous: tuple[float, float], edition: str) -> Check:
+def _margin_check(peak: Peak, place: str, continuous: tuple[float, float], edition: str) -> Check:
     """Separation margin of one peak from the range of continuous speeds [rad/s]."""
     factor = peak.amplification_factor
     low, high = continuous
@@ -109,7 +114,7 @@ def margin_check(peak: Peak, place: str, continuous: tuple[float, float], editio
     return _judged(name, where, actual, ">=", limit, "", formula, edition, note)
 
 
-def vibration_limit(speed: float) -> float:
+def _vibration_limit(speed: float) -> float:
     """Peak-to-peak limit at probes, min(25.4, 25.4 sqrt(12000/N)) um [m].
 
     speed : Maximum continuous speed [rad/s].
@@ -117,19 +122,19 @@ def vibration_limit(speed: float) -> float:
     return _VIBRATION * min(1.0, math.sqrt(12000.0 / (speed * RPM)))
 
 
-def probe_check(
+def _probe_check(
     response: ProbeResponse, case: str, continuous: tuple[float, float], edition: str
 ) -> Check:
     """Largest peak-to-peak major axis of one probe within the range of speeds [rad/s]."""
     value = _largest(response.speed, 2.0 * response.major_axis, continuous)
     return _judged(
         "vibration at the probe", f"{response.name}, {case}", value, "<=",
-        vibration_limit(continuous[1]), "m", "min(25.4, 25.4 sqrt(12000/N)) um peak to peak",
+        _vibration_limit(continuous[1]), "m", "min(25.4, 25.4 sqrt(12000/N)) um peak to peak",
         edition,
     )  # fmt: skip
 
 
-def scale_factor(
+def _scale_factor(
     responses: Sequence[ProbeResponse], continuous: tuple[float, float]
 ) -> float | None:
     """Factor from the computed response to the limit at the probes, held in 0.5 to 6."""
@@ -137,16 +142,16 @@ def scale_factor(
     largest = max((v for v in values if v is not None), default=0.0)
     if largest <= 0.0:
         return None
-    return float(np.clip(vibration_limit(continuous[1]) / largest, *_SCALES))
+    return float(np.clip(_vibration_limit(continuous[1]) / largest, *_SCALES))
 
 
-def clearance_checks(
+def _clearance_checks(
     response: UnbalanceResponse, clearances: Sequence[Clearance], scale: float | None, case: str,
     top: float, edition: str,
 ) -> list[Check]:  # fmt: skip
     """Peak-to-peak response at close clearances, scaled, up to a speed.
 
-    scale : From `scale_factor`.
+    scale : From `_scale_factor`.
     case : Name of the unbalances.
     top : Highest speed, trip for example [rad/s].
     """
@@ -167,7 +172,7 @@ def clearance_checks(
     return checks
 
 
-def stability_checks(curve: DecrementCurve, edition: str) -> list[Check]:
+def _stability_checks(curve: DecrementCurve, edition: str) -> list[Check]:
     """Level I stability: decrement at Q_A, and Q0 over Q_A."""
     place = f"{curve.speed * RPM:.0f} rpm, Q_A = {curve.anticipated:.4g} N/m"
     decrement = _judged(
@@ -202,13 +207,13 @@ def lateral_checks(
     for case, probes in responses.items():
         for probe in probes:
             where = f"{probe.name}, {case}"
-            checks += [margin_check(p, where, continuous, edition) for p in probe.peaks]
-            checks.append(probe_check(probe, case, continuous, edition))
+            checks += [_margin_check(p, where, continuous, edition) for p in probe.peaks]
+            checks.append(_probe_check(probe, case, continuous, edition))
     for case, response in whole.items():
-        scale = scale_factor(responses[case], continuous)
-        checks += clearance_checks(response, clearances, scale, case, top, edition)
+        scale = _scale_factor(responses[case], continuous)
+        checks += _clearance_checks(response, clearances, scale, case, top, edition)
     for curve in curves:
-        checks += stability_checks(curve, edition)
+        checks += _stability_checks(curve, edition)
     return checks
 
 
@@ -221,3 +226,139 @@ def _largest(speed: Array, values: Array, between: tuple[float, float]) -> float
         ends = [s for s in between if speed[known][0] <= s <= speed[known][-1]]
         found = np.append(found, np.interp(ends, speed[known], values[known]))
     return float(found.max()) if found.size else None
+
+
+ComplexArray = NDArray[np.complex128]
+
+_ANTINODE = 0.3
+"""Of the largest deflection, from which a local maximum is excited."""
+_OVERHUNG = 0.1
+"""Of the rotor's mass, from which what lies beyond the last bearing is an overhung mass."""
+_ALIKE = 0.9
+"""MAC from which two modes (of the two planes, say) are excited by the same unbalance."""
+
+
+@dataclass(frozen=True)
+class UnbalancePlane:
+    """An unbalance at one place.
+
+    at : From the left end [m].
+    amount : [kg m]
+    phase : 0 or pi [rad].
+    mass : W of the formula [kg].
+    """
+
+    at: float
+    amount: float
+    phase: float
+    mass: float
+
+
+@dataclass(frozen=True)
+class UnbalanceCase:
+    """Unbalances that excite one mode.
+
+    speed : At which the mode is critical, or the highest one where it is not [rad/s].
+    """
+
+    name: str
+    speed: float
+    planes: tuple[UnbalancePlane, ...]
+
+    def applied(self, machine: Machine) -> Machine:
+        """Machine with these unbalances and no others."""
+        bare = replace(machine.rotor, unbalance=np.zeros(len(machine.rotor.nodes), dtype=complex))
+        planes = [(plane.at, plane.amount, plane.phase) for plane in self.planes]
+        return replace(machine, rotor=with_unbalance(bare, planes))
+
+
+def _residual_unbalance(mass: float, speed: float) -> float:
+    """Residual unbalance U_r [kg m] of one plane: max(6350 W/N, 0.254 W) g mm.
+
+    mass : Journal static load, or overhung mass, W [kg].
+    speed : Maximum continuous speed [rad/s].
+    """
+    return max(6350.0 * mass / (speed * RPM), 0.254 * mass) * 1e-6
+
+
+def unbalance_cases(
+    machine: Machine, found: Modes, loads: Mapping[int, float], speed: float, factor: float
+) -> tuple[UnbalanceCase, ...]:
+    """Unbalances for every mode that is critical within the speeds of `found`.
+
+    machine : With positions of its rotor's nodes.
+    found : Of the machine over speed.
+    loads : Static load on each bearing by its node [N].
+    speed : Maximum continuous speed [rad/s].
+    factor : Times the residual unbalance.
+
+    Without any critical speed the lowest mode at the last speed is taken. Modes of like shape (of
+    the two planes) make one case.
+    """
+    branches = found.oscillating()
+    chosen = [(one.speed, one.branch) for one in critical_speeds(machine, found)]
+    if not chosen and branches.eigenvalues.shape[1]:
+        last = branches.undamped_frequency[-1]
+        chosen = [(float(branches.parameter[-1]), int(last.argmin()))]
+    deflections: list[Array] = []
+    cases = []
+    for critical, branch in chosen:
+        i = int(np.abs(branches.parameter - critical).argmin())
+        line = deflection(machine.rotor, branches.shapes[i, branch])
+        if any(_mac(line, other) > _ALIKE for other in deflections):
+            continue
+        deflections.append(line)
+        planes = _planes(machine.rotor, line, loads, speed, factor)
+        cases.append(UnbalanceCase(f"mode {len(cases) + 1}", critical, planes))
+    return tuple(cases)
+
+
+def deflection(rotor: Rotor, shape: ComplexArray) -> Array:
+    """Deflection (n_nodes,) of a mode in the plane of its largest motion, at that instant."""
+    motion = np.array([shape[[x, y]] for x, y in rotor.planes])
+    largest = motion[np.abs(motion).max(axis=1).argmax()]
+    return np.real(motion @ largest.conj()) / float(np.linalg.norm(largest))
+
+
+def _mac(a: Array, b: Array) -> float:
+    return float((a @ b) ** 2 / ((a @ a) * (b @ b)))
+
+
+def _planes(
+    rotor: Rotor, line: Array, loads: Mapping[int, float], speed: float, factor: float
+) -> tuple[UnbalancePlane, ...]:
+    """Planes at the antinodes, each with the journal loads nearest to it or its overhung mass."""
+    at = np.array([node.position for node in rotor.nodes])
+    supports = sorted(loads, key=lambda node: at[node])
+    ends = at[supports[0]], at[supports[-1]]
+    lumped = np.abs(rotor.mass @ rotor.translation((1.0, 0.0)))
+    nodal = np.array([lumped[x] for x, _ in rotor.planes])
+    outboard = float(nodal[at < ends[0]].sum()), float(nodal[at > ends[1]].sum())
+    low = at[0] if outboard[0] > _OVERHUNG * rotor.total_mass else ends[0]
+    high = at[-1] if outboard[1] > _OVERHUNG * rotor.total_mass else ends[1]
+    found = _antinodes(line, (at >= low) & (at <= high))
+    mass = dict.fromkeys(found, 0.0)
+    for i in found:
+        mass[i] += outboard[0] if at[i] < ends[0] else outboard[1] if at[i] > ends[1] else 0.0
+    inboard = [i for i in found if ends[0] <= at[i] <= ends[1]]
+    for node, load in loads.items():
+        if inboard:
+            nearest = min(inboard, key=lambda i: abs(at[i] - at[node]))
+            mass[nearest] += abs(load) / STANDARD_GRAVITY
+    sign = np.sign(line[max(found, key=lambda i: abs(line[i]))])
+    return tuple(
+        UnbalancePlane(
+            float(at[i]), factor * _residual_unbalance(mass[i], speed),
+            0.0 if line[i] * sign > 0.0 else float(np.pi), mass[i],
+        )
+        for i in found if mass[i] > 0.0
+    )  # fmt: skip
+
+
+def _antinodes(line: Array, within: NDArray[np.bool_]) -> list[int]:
+    """Local maxima of the deflection's magnitude, ends included."""
+    index = np.flatnonzero(within)
+    size = np.abs(line[index])
+    before, after = np.append(-np.inf, size[:-1]), np.append(size[1:], -np.inf)
+    tops = (size > before) & (size >= after) & (size > _ANTINODE * size.max())
+    return [int(i) for i in index[tops]]

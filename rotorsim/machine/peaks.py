@@ -128,7 +128,7 @@ def probe_responses(
             ProbeResponse(
                 probe.name or f"probe {number}", probe.at, probe.angle, speeds, np.abs(along),
                 np.mod(lag, 2.0 * np.pi), response.major_axis(node),
-                find_peaks(_amplitude_along(machine, node, probe.angle), speeds, np.abs(along)),
+                _find_peaks(_amplitude_along(machine, node, probe.angle), speeds, np.abs(along)),
             )
         )  # fmt: skip
     return tuple(found)
@@ -143,7 +143,7 @@ def _amplitude_along(machine: Machine, node: int, angle: float) -> Callable[[flo
     return amplitude
 
 
-def find_peaks(
+def _find_peaks(
     amplitude: Callable[[float], float], speeds: Array, values: Array
 ) -> tuple[Peak, ...]:
     """Peaks of a response, each refined between its neighbours.

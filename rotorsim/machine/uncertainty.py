@@ -173,7 +173,7 @@ def _features(column: Array, powers: int) -> Array:
     return x - x.mean(axis=0)
 
 
-def sample_inputs(
+def _sample_inputs(
     tolerances: Mapping[str, Tolerance],
     count: int,
     method: Literal["sobol", "latin_hypercube"] = "sobol",
@@ -216,10 +216,10 @@ def propagate(
     function : Inputs by name to outputs by name, for example ``threshold_speed`` [rad/s] and
         ``critical_mass`` [kg]; None or NaN: not defined there. It must be picklable where `mapper`
         uses processes.
-    count, method, seed : As for `sample_inputs`.
+    count, method, seed : As for `_sample_inputs`.
     mapper : ``map``, or the ``map`` of any executor.
     """
-    samples = sample_inputs(tolerances, count, method, seed)
+    samples = _sample_inputs(tolerances, count, method, seed)
     results = list(mapper(_Guarded(function), samples))
     failures = tuple((i, r) for i, r in enumerate(results) if isinstance(r, str))
     good = [r for r in results if not isinstance(r, str)]

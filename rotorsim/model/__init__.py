@@ -8,8 +8,17 @@ from .bearing import Arc, Bearing, Groove
 from .case import Case
 from .lubricant import ExponentialViscosity, Lubricant, ViscosityLaw, WaltherViscosity
 from .operating import EccentricityTarget, LoadTarget, Target
-from .pads import Pad, PadInertia, pad_inertia
-from .pivots import LinePivot, Pivot, RigidPivot, SocketPivot, SpherePivot, SpringPivot
+from .pads import (
+    LinePivot,
+    Pad,
+    PadInertia,
+    Pivot,
+    RigidPivot,
+    SocketPivot,
+    SpherePivot,
+    SpringPivot,
+    pad_inertia,
+)
 from .settings import (
     BushModel,
     Cavitation,

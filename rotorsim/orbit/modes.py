@@ -58,7 +58,7 @@ class Growth:
         return -2.0 * np.pi * self.rate / self.frequency if self.frequency else float("nan")
 
 
-def fit_modes(orbit: Orbit) -> Modes:
+def _fit_modes(orbit: Orbit) -> Modes:
     """Fit exponentials to x, y, vx, vy with a matrix pencil.
 
     Raises InputError: The speed varies, or there are too few samples.
@@ -131,7 +131,7 @@ def growth_rate(orbit: Orbit) -> Growth | None:
     For small motions they equal the real and imaginary part of the eigenvalue nearest to
     instability, also beneath an unbalance response.
     """
-    modes = fit_modes(orbit)
+    modes = _fit_modes(orbit)
     free = np.flatnonzero(~modes.synchronous)
     if not free.size:
         return None

@@ -163,7 +163,7 @@ class Beam:
             material = section.material or self.material
             area = math.pi * (outer**2 - inner**2)
             second = math.pi / 4.0 * (outer**4 - inner**4)
-            kappa = shear_coefficient(inner / outer, material.poisson_ratio)
+            kappa = _shear_coefficient(inner / outer, material.poisson_ratio)
             if section.stiffness:
                 total[0] += material.youngs_modulus * second
                 total[1] += kappa * material.shear * area
@@ -176,7 +176,7 @@ class Beam:
         return total[0], total[1], total[2], total[3]
 
 
-def shear_coefficient(radius_ratio: float | Array, poisson_ratio: float) -> float | Array:
+def _shear_coefficient(radius_ratio: float | Array, poisson_ratio: float) -> float | Array:
     """Cowper's shear coefficient of a (hollow) circle; `radius_ratio` is inner over outer."""
     m2 = np.square(radius_ratio)
     first = (1.0 + m2) ** 2
@@ -208,7 +208,7 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
         geometric[here, here] += tension
     names = [""] * nodes.size
     for disc in beam.discs:
-        i = nearest_node(nodes, disc.at)
+        i = _nearest_node(nodes, disc.at)
         mass[2 * i, 2 * i] += disc.mass
         mass[2 * i + 1, 2 * i + 1] += disc.transverse_inertia
         gyroscopic[2 * i + 1, 2 * i + 1] += disc.polar_inertia
@@ -219,7 +219,7 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
     )
     damping = beam.internal_damping * stiffness
     both = _BothPlanes(nodes.size, 1.0 if beam.clockwise else -1.0)
-    carried = [nearest_node(nodes, place) for place in places] or [0, nodes.size - 1]
+    carried = [_nearest_node(nodes, place) for place in places] or [0, nodes.size - 1]
     return Rotor(
         mass=both.alike(mass),
         damping=both.alike(damping),
@@ -359,7 +359,7 @@ class _BothPlanes:
         return x @ plane @ y.T - y @ plane @ x.T
 
 
-def nearest_node(nodes: Array, place: float) -> int:
+def _nearest_node(nodes: Array, place: float) -> int:
     """Number of the node at `place` [m]."""
     return int(np.abs(nodes - place).argmin())
 
@@ -378,5 +378,5 @@ def with_unbalance(rotor: Rotor, planes: Sequence[tuple[float, float, float]]) -
     positions = np.array([node.position for node in rotor.nodes])
     unbalance = np.array(rotor.unbalance)
     for at, amount, phase in planes:
-        unbalance[nearest_node(positions, at)] += amount * np.exp(1j * phase)
+        unbalance[_nearest_node(positions, at)] += amount * np.exp(1j * phase)
     return replace(rotor, unbalance=unbalance)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ..bearing.interpolation import Coefficients
 from ..bearing.whirl import WhirlThreshold, rigid_threshold
 from ..errors import InputError
-from ..machine.actuator import ActuatedForce
+from ..machine.control import ActuatedForce
 from ..model import Case
 from ..model.orbit import ActuatorSettings, Design
 
@@ -224,7 +224,7 @@ def with_actuator(
 
     Raises InputError: The speed changes, or as `_design_feedback`.
     """
-    from ..machine.actuator import ActuatedForce
+    from ..machine.control import ActuatedForce
     from ..orbit import LinearForce
     from ..orbit.forces import find_equilibrium, linearize_force
 

@@ -10,9 +10,14 @@ import numpy as np
 
 from ..errors import InputError
 from ..machine.destabilising import DecrementCurve, decrement_curve
-from ..machine.lateral import Check, lateral_checks, required_margin, separation_margin
+from ..machine.lateral import (
+    Check,
+    lateral_checks,
+    required_margin,
+    separation_margin,
+    unbalance_cases,
+)
 from ..machine.peaks import Peak, ProbeResponse, node_at, probe_responses, response_speeds
-from ..machine.residual import unbalance_cases
 from ..machine.response import unbalance_response
 from .machine import MachineResult
 

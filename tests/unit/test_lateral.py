@@ -10,21 +10,22 @@ from rotorsim.errors import InputError
 from rotorsim.machine.critical_map import critical_speed_map, principal_stiffness
 from rotorsim.machine.destabilising import decrement_curve
 from rotorsim.machine.lateral import (
-    clearance_checks,
-    margin_check,
-    probe_check,
+    _clearance_checks,
+    _margin_check,
+    _probe_check,
+    _residual_unbalance,
+    _scale_factor,
+    _stability_checks,
+    _vibration_limit,
     required_margin,
-    scale_factor,
     separation_margin,
-    stability_checks,
-    vibration_limit,
+    unbalance_cases,
 )
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import modes
-from rotorsim.machine.peaks import Peak, find_peaks, node_at, probe_responses, response_speeds
-from rotorsim.machine.residual import residual_unbalance, unbalance_cases
+from rotorsim.machine.peaks import Peak, _find_peaks, node_at, probe_responses, response_speeds
 from rotorsim.machine.response import unbalance_response
-from rotorsim.machine.statics import reactions_by_statics, weight
+from rotorsim.machine.statics import _reactions_by_statics, weight
 from rotorsim.machine.support import ConstantSupport, Pedestal
 from rotorsim.model.machine import Clearance, Probe
 from rotorsim.model.shaft import Disc, Section
@@ -62,7 +63,7 @@ def test_amplification_factor_of_a_jeffcott_rotor(ratio):
     def amplitude(speed):
         return float(abs(unbalance_response(machine, speed).probe(0, 0.4)[0]))
 
-    (peak,) = find_peaks(amplitude, speeds, np.abs(response.probe(0, 0.4)))
+    (peak,) = _find_peaks(amplitude, speeds, np.abs(response.probe(0, 0.4)))
     top, height, (low, high) = exact(ratio)
     assert peak.speed == pytest.approx(top * NATURAL, rel=1e-6)
     assert peak.amplitude == pytest.approx(1e-4 / M * height, rel=1e-9)
@@ -80,12 +81,12 @@ def test_a_peak_without_its_half_power_points_says_so():
     def amplitude(speed):
         return float(abs(unbalance_response(machine, speed).probe(0, 0.0)[0]))
 
-    (peak,) = find_peaks(amplitude, speeds, np.abs(response.probe(0, 0.0)))
+    (peak,) = _find_peaks(amplitude, speeds, np.abs(response.probe(0, 0.0)))
     assert peak.lower is None
     assert peak.upper is None
     assert peak.amplification_factor is None
     assert "above the peak within the speeds" in peak.note
-    check = margin_check(peak, "probe", (500.0, 600.0), EDITION)
+    check = _margin_check(peak, "probe", (500.0, 600.0), EDITION)
     assert check.passed is None
     assert check.note == peak.note
 
@@ -138,16 +139,16 @@ def test_margins_of_peaks():
     ]:  # fmt: skip
         half = 0.5 * speed / factor
         peak = Peak(speed, 1e-6, speed - half, speed + half)
-        check = margin_check(peak, "probe", (100.0, 200.0), EDITION)
+        check = _margin_check(peak, "probe", (100.0, 200.0), EDITION)
         assert check.passed is passed, (speed, factor)
         assert check.edition == EDITION
 
 
 def test_limits_by_hand():
-    assert residual_unbalance(100.0, 10000.0 / RPM) == pytest.approx(63.5e-6)
-    assert residual_unbalance(100.0, 50000.0 / RPM) == pytest.approx(25.4e-6)
-    assert vibration_limit(6000.0 / RPM) == pytest.approx(25.4e-6)
-    assert vibration_limit(48000.0 / RPM) == pytest.approx(12.7e-6)
+    assert _residual_unbalance(100.0, 10000.0 / RPM) == pytest.approx(63.5e-6)
+    assert _residual_unbalance(100.0, 50000.0 / RPM) == pytest.approx(25.4e-6)
+    assert _vibration_limit(6000.0 / RPM) == pytest.approx(25.4e-6)
+    assert _vibration_limit(48000.0 / RPM) == pytest.approx(12.7e-6)
 
 
 def test_probe_and_clearance_checks_scale_with_the_unbalance():
@@ -157,11 +158,11 @@ def test_probe_and_clearance_checks_scale_with_the_unbalance():
         machine = beam_machine(unbalance=unbalance)
         speeds = np.linspace(50.0, 500.0, 200)
         probes = probe_responses(machine, [Probe(0.3)], speeds)
-        scale = scale_factor(probes, between)
+        scale = _scale_factor(probes, between)
         response = unbalance_response(machine, speeds)
         place = [Clearance(0.6, 4e-4, "seal")]
-        (check,) = clearance_checks(response, place, scale, "mode 1", 450.0, EDITION)
-        found.append((probe_check(probes[0], "mode 1", between, EDITION), scale, check))
+        (check,) = _clearance_checks(response, place, scale, "mode 1", 450.0, EDITION)
+        found.append((_probe_check(probes[0], "mode 1", between, EDITION), scale, check))
     (small, low, near), (large, high, far) = found
     assert large.value == pytest.approx(100.0 * small.value)
     assert (small.passed, large.passed) == (True, False)
@@ -186,20 +187,20 @@ def test_stiffness_that_destabilises_a_jeffcott_rotor():
     forward = quarter[quarter.imag > 0.0][0]
     expected = -2.0 * math.pi * forward.real / forward.imag
     assert curve.anticipated_decrement == pytest.approx(expected, rel=1e-9)
-    least, ratio_check = stability_checks(curve, EDITION)
+    least, ratio_check = _stability_checks(curve, EDITION)
     assert least.passed is True
     assert ratio_check.value == pytest.approx(4.0)
     assert ratio_check.passed is True
     assert np.all(np.diff(curve.decrement) < 0.0)
     near = decrement_curve(jeffcott(ratio), 2.0 * NATURAL, {0: 0.9 * q0})
-    assert [check.passed for check in stability_checks(near, EDITION)] == [False, False]
+    assert [check.passed for check in _stability_checks(near, EDITION)] == [False, False]
 
 
 def test_a_machine_unstable_by_itself_has_no_stiffness_left():
     support = ConstantSupport([[K, 1e6], [-1e6, K]], 100.0)
     curve = decrement_curve(Machine(Rotor.rigid(M), [(0, support)]), 500.0, {0: 1e5})
     assert curve.threshold == 0.0
-    assert [check.passed for check in stability_checks(curve, EDITION)] == [False, False]
+    assert [check.passed for check in _stability_checks(curve, EDITION)] == [False, False]
 
 
 def test_the_curve_is_that_of_the_mode_that_is_driven():
@@ -231,7 +232,7 @@ def test_unbalance_is_placed_to_excite_each_mode():
     rotor = beam_rotor(beam, [0.1, 1.3])
     nodes = [node_at(rotor, z) for z in (0.1, 1.3)]
     machine = Machine(rotor, [(node, ConstantSupport(5e7, 2e3)) for node in nodes])
-    loads = reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
+    loads = _reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
     assert loads.sum() == pytest.approx(rotor.total_mass * STANDARD_GRAVITY)
     found = modes(machine, np.linspace(10.0, 2500.0, 40))
     static = dict(zip(nodes, loads, strict=True))
@@ -239,7 +240,7 @@ def test_unbalance_is_placed_to_excite_each_mode():
     (plane,) = first.planes
     assert plane.at == pytest.approx(0.7, abs=0.05)
     assert plane.mass == pytest.approx(rotor.total_mass, rel=1e-6)
-    assert plane.amount == pytest.approx(4.0 * residual_unbalance(plane.mass, 1000.0))
+    assert plane.amount == pytest.approx(4.0 * _residual_unbalance(plane.mass, 1000.0))
     left, right = second.planes
     assert left.at + right.at == pytest.approx(1.4, abs=0.02)
     assert abs(left.phase - right.phase) == pytest.approx(np.pi)
@@ -259,7 +260,7 @@ def test_an_overhung_mode_takes_the_overhung_mass():
     rotor = beam_rotor(beam, [0.1, 0.7])
     nodes = [node_at(rotor, z) for z in (0.1, 0.7)]
     machine = Machine(rotor, [(node, ConstantSupport(1e9, 2e3)) for node in nodes])
-    loads = reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
+    loads = _reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
     assert loads[0] < 0.0
     found = modes(machine, np.linspace(10.0, 1000.0, 30))
     case = unbalance_cases(machine, found, dict(zip(nodes, loads, strict=True)), 500.0, 1.0)[0]

@@ -26,7 +26,7 @@ from rotorsim.orbit import (
 from rotorsim.orbit.analysis import recognise
 from rotorsim.orbit.clearance import contact_boundary, minimum_film
 from rotorsim.orbit.integrate import simulate_pieces
-from rotorsim.orbit.modes import fit_modes, growth_rate
+from rotorsim.orbit.modes import _fit_modes, growth_rate
 from rotorsim.orbit.orbit import OrbitStatus, concatenate
 from rotorsim.orbit.problem import Controller, Method
 from rotorsim.orbit.spectrum import whirl_frequency_ratio
@@ -232,7 +232,7 @@ def test_modes_find_static_position_and_unbalance_response_too():
     orbit = simulate(
         problem(force=force, rotor=Rotor.rigid(100.0, 1e-3), initial_displacement=(1e-6, 0.0))
     )
-    modes = fit_modes(orbit)
+    modes = _fit_modes(orbit)
     steady = modes.eigenvalues[modes.synchronous]
     assert np.any(np.abs(steady) < 1e-2)
     assert np.any(np.abs(steady - 1j * SPEED) < 1e-2)

@@ -17,10 +17,10 @@ from sample_results import campbell_of, chart_of, orbit_of
 from rotorsim.errors import InputError
 from rotorsim.show import viewer
 from rotorsim.show.recording import RecordingContents, surfaces, write_recording
-from rotorsim.show.recording.charts import eigenvalues_at
+from rotorsim.show.recording.charts import _eigenvalues_at
 from rotorsim.show.recording.colours import colours
-from rotorsim.show.recording.runs import Run, frame_rows, thin
-from rotorsim.show.recording.series_view import envelope_rows, whirl_ratio
+from rotorsim.show.recording.runs import Run, _frame_rows, thin
+from rotorsim.show.recording.series_view import _envelope_rows, _whirl_ratio
 from rotorsim.study.orbits import FilmFrame
 
 C = 1e-4
@@ -214,7 +214,7 @@ def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
 
 
 def test_film_frames_follow_the_speed_of_a_run_up():
-    rows, frames = frame_rows(
+    rows, frames = _frame_rows(
         Run("thd", orbit(speed=(100.0, 1000.0))), np.array([100.0, 400.0, 900.0])
     )
     assert frames.tolist() == [0, 1, 2]
@@ -233,15 +233,15 @@ def test_display_grid_reproduces_a_smooth_field():
 
 
 def test_whirl_ratio_of_a_known_whirl():
-    forward = whirl_ratio(orbit(whirl=0.48))
+    forward = _whirl_ratio(orbit(whirl=0.48))
     assert forward == pytest.approx(0.48, abs=1e-9)
-    assert whirl_ratio(orbit(whirl=-1.0)) == pytest.approx(-1.0, abs=1e-9)
+    assert _whirl_ratio(orbit(whirl=-1.0)) == pytest.approx(-1.0, abs=1e-9)
 
 
 def test_envelope_keeps_the_extremes():
     values = np.sin(np.arange(100_000) * 0.37)
     values[54_321] = 9.0
-    rows = envelope_rows(values, 2_000)
+    rows = _envelope_rows(values, 2_000)
     assert rows.size <= 2_002
     assert 54_321 in rows
     assert rows[0] == 0
@@ -316,7 +316,7 @@ def test_eigenvalues_move_along_their_branch_and_turn_red_at_the_threshold(writt
     assert red == [bool(i and v.real > 0) for i, v in zip(shown, upper, strict=True)]
     # In time the point stands where the run's speed puts it.
     _, now = column(file, entity, "Points2D:positions")
-    value = eigenvalues_at(curve, np.array([800.0]))[0, 0]
+    value = _eigenvalues_at(curve, np.array([800.0]))[0, 0]
     np.testing.assert_allclose(now[0][0], chart.place(value.real, value.imag), atol=0.01)
 
 

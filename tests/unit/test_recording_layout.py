@@ -15,7 +15,7 @@ from rotorsim.orbit import Orbit
 from rotorsim.show.recording import RecordingContents, write_recording
 from rotorsim.show.recording.film_view import changing, quantities
 from rotorsim.show.recording.runs import Run, distinct_speeds
-from rotorsim.show.recording.series_view import MINIMUM_FILM, whirl_ratio
+from rotorsim.show.recording.series_view import MINIMUM_FILM, _whirl_ratio
 from rotorsim.study.orbits import FilmFrame
 
 COUNT = 801
@@ -137,9 +137,9 @@ def test_a_temperature_that_is_kept_is_written_once():
 def test_whirl_ratio_needs_no_centre_and_knows_rest():
     moving = orbit()
     drift = dataclasses.replace(moving, x=moving.x + 1e-5 * moving.t / 0.2)
-    assert whirl_ratio(drift) == pytest.approx(0.5, abs=0.01)
+    assert _whirl_ratio(drift) == pytest.approx(0.5, abs=0.01)
     still = dataclasses.replace(moving, x=np.full(COUNT, 3e-5), y=np.full(COUNT, 4e-5))
-    assert np.isnan(whirl_ratio(still)).all()
+    assert np.isnan(_whirl_ratio(still)).all()
 
 
 def test_the_line_of_contact_and_the_film_are_the_bearings_own():

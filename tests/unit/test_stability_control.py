@@ -8,15 +8,15 @@ from scipy.integrate import solve_ivp
 from rotorsim.bearing.interpolation import Coefficients
 from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
-from rotorsim.machine.actuator import ActuatedForce
 from rotorsim.machine.control import (
+    ActuatedForce,
     StateFeedback,
+    _step_response,
     design_lqr,
     design_pd,
     loop_margins,
     proportional_derivative,
     receptance,
-    step_response,
 )
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.response import unbalance_response
@@ -73,7 +73,7 @@ def test_unbalance_response_against_time_integration():
 
 def test_step_response_ends_at_the_static_deflection():
     stable = state_space(FILM, 0.3 * CRITICAL)
-    time, displacement = step_response(stable, force=100.0, entry=1, duration=0.3)
+    time, displacement = _step_response(stable, force=100.0, entry=1, duration=0.3)
     assert time[-1] == pytest.approx(0.3)
     assert np.allclose(displacement[:, -1], np.linalg.solve(K, [0.0, 100.0]), rtol=1e-6)
 

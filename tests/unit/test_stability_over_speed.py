@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from closed_forms import flexible_critical_mass
 
 from rotorsim.bearing.table import CoefficientTable
-from rotorsim.bearing.whirl import flexible_critical_mass, rigid_threshold
+from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
 from rotorsim.files.rotors import load_rotor
 from rotorsim.machine.machine import Machine

@@ -7,7 +7,7 @@ import pytest
 
 from rotorsim.errors import InputError
 from rotorsim.machine.matrices import state_matrix
-from rotorsim.machine.rates import eigenvalues, growth_rate_map, growth_rates
+from rotorsim.machine.rates import _growth_rates, eigenvalues, growth_rate_map
 
 N = 20_000
 
@@ -52,7 +52,7 @@ KINDS = ["any", "film", "SI", "light", "heavy", "nearly alike modes", "symmetric
 def test_same_values_as_the_dense_solver(kind):
     k, c, mass = coefficients(kind)
     reference = np.linalg.eigvals(state_matrix(k, c, mass))
-    error = np.abs(growth_rates(k, c, mass) - reference.real.max(axis=1))
+    error = np.abs(_growth_rates(k, c, mass) - reference.real.max(axis=1))
     assert (error / np.abs(reference).max(axis=1)).max() < 1e-9
 
 
@@ -70,7 +70,7 @@ def test_relative_to_the_eigenvalue_itself_in_extended_precision(kind):
         s = s - (a * b - p * q) / slope
     leading = s[np.arange(len(s)), s.real.argmax(axis=1)]
     error = np.abs(
-        growth_rates(*coefficients(kind)[:2], coefficients(kind)[2])[:3000] - leading.real
+        _growth_rates(*coefficients(kind)[:2], coefficients(kind)[2])[:3000] - leading.real
     )
     if np.finfo(np.longdouble).eps < 1e-18:
         assert (error / np.abs(leading)).max() < 1e-10
@@ -78,11 +78,11 @@ def test_relative_to_the_eigenvalue_itself_in_extended_precision(kind):
 
 def test_double_eigenvalues():
     # Critically damped, all four equal; and a defective pair, known to half the digits.
-    assert growth_rates(np.eye(2), 2.0 * np.eye(2), 1.0) == pytest.approx(-1.0, abs=1e-7)
-    assert growth_rates([[1.0, 1.0], [0.0, 1.0]], 0.2 * np.eye(2), 1.0) == pytest.approx(
+    assert _growth_rates(np.eye(2), 2.0 * np.eye(2), 1.0) == pytest.approx(-1.0, abs=1e-7)
+    assert _growth_rates([[1.0, 1.0], [0.0, 1.0]], 0.2 * np.eye(2), 1.0) == pytest.approx(
         -0.1, abs=1e-7
     )
-    assert growth_rates([[1.0, 0.0], [0.0, 0.0]], np.eye(2), 1.0) == pytest.approx(0.0, abs=1e-15)
+    assert _growth_rates([[1.0, 0.0], [0.0, 0.0]], np.eye(2), 1.0) == pytest.approx(0.0, abs=1e-15)
 
 
 def test_map_is_every_point_with_every_mass():
@@ -92,7 +92,7 @@ def test_map_is_every_point_with_every_mass():
     rates = growth_rate_map(k, c, mass)
     assert rates.shape == (2, 3, 5)
     assert np.isnan(rates[1, 2]).all()
-    expected = growth_rates(k[:, :, None], c[:, :, None], mass)
+    expected = _growth_rates(k[:, :, None], c[:, :, None], mass)
     assert np.array_equal(rates, expected, equal_nan=True)
     assert np.isfinite(rates[:1]).all()
 
@@ -100,7 +100,7 @@ def test_map_is_every_point_with_every_mass():
 @pytest.mark.parametrize("mass", [0.0, -1.0, np.nan, np.inf])
 def test_bad_mass(mass):
     with pytest.raises(InputError, match="mass"):
-        growth_rates(np.eye(2), np.eye(2), mass)
+        _growth_rates(np.eye(2), np.eye(2), mass)
     with pytest.raises(InputError, match="mass"):
         growth_rate_map(np.eye(2), np.eye(2), [1.0, mass])
 

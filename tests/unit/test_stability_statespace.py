@@ -3,11 +3,12 @@
 import control
 import numpy as np
 import pytest
+from closed_forms import flexible_critical_mass
 from scipy.io import savemat
 from scipy.sparse import csc_matrix
 
 from rotorsim.bearing.interpolation import Coefficients
-from rotorsim.bearing.whirl import flexible_critical_mass, rigid_threshold
+from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
 from rotorsim.files.rotors import load_rotor
 from rotorsim.machine.machine import Machine

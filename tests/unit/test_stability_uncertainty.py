@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rotorsim.errors import InputError
-from rotorsim.machine.uncertainty import SampleError, Tolerance, propagate, sample_inputs
+from rotorsim.machine.uncertainty import SampleError, Tolerance, _sample_inputs, propagate
 
 INPUTS = {
     "clearance": Tolerance(100.0, 10.0),
@@ -21,7 +21,7 @@ def linear(inputs):
 
 @pytest.mark.parametrize("method", ["sobol", "latin_hypercube"])
 def test_samples_follow_their_distributions(method):
-    samples = sample_inputs(INPUTS, 1024, method, seed=4)
+    samples = _sample_inputs(INPUTS, 1024, method, seed=4)
     assert len(samples) == 1024
     clearance = np.array([s["clearance"] for s in samples])
     viscosity = np.array([s["viscosity"] for s in samples])
@@ -31,8 +31,8 @@ def test_samples_follow_their_distributions(method):
     assert viscosity.mean() == pytest.approx(1.0, abs=1e-3)
     assert viscosity.std() == pytest.approx(0.1, rel=0.01)
     assert np.abs(viscosity - 1.0).max() <= 0.4
-    assert sample_inputs(INPUTS, 1024, method, seed=4) == samples
-    assert sample_inputs(INPUTS, 1024, method, seed=5) != samples
+    assert _sample_inputs(INPUTS, 1024, method, seed=4) == samples
+    assert _sample_inputs(INPUTS, 1024, method, seed=5) != samples
 
 
 @pytest.mark.parametrize(("count", "tolerance"), [(64, 0.03), (4096, 0.005)])
@@ -137,8 +137,8 @@ def test_bad_requests():
     with pytest.raises(InputError, match="uniform or normal"):
         Tolerance(1.0, 1.0, "beta")  # type: ignore[arg-type]
     with pytest.raises(InputError, match="tolerances"):
-        sample_inputs({}, 8)
+        _sample_inputs({}, 8)
     with pytest.raises(InputError, match="count"):
-        sample_inputs(INPUTS, 1)
+        _sample_inputs(INPUTS, 1)
     with pytest.raises(InputError, match="there are critical_mass"):
         propagate(linear, INPUTS, 8).quantile("speed")

@@ -16,8 +16,7 @@ from scipy.optimize import root_scalar
 
 from rotorsim.bearing.dynamics import _refine_eigenvalue, film_dynamics, rigid_eigenvalues
 from rotorsim.bearing.solve import solve_case
-from rotorsim.bearing.stored_oil import FrequencyScan
-from rotorsim.bearing.whirl import rigid_threshold
+from rotorsim.bearing.whirl import FrequencyScan, rigid_threshold
 from rotorsim.film.linearization import DynamicStiffness, linearize
 from rotorsim.film.solution import solve_film
 from rotorsim.model import Cavitation, EccentricityTarget, LoadTarget

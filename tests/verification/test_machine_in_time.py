@@ -9,7 +9,7 @@ from rotorsim.machine.modes import modes
 from rotorsim.machine.response import unbalance_response
 from rotorsim.machine.support import ConstantSupport
 from rotorsim.orbit import LinearForce, OrbitProblem, SpeedSchedule, simulate
-from rotorsim.orbit.modes import fit_modes
+from rotorsim.orbit.modes import _fit_modes
 from rotorsim.rotor import Rotor
 
 K = np.array([[2.2e8, 1.6e8], [-0.9e8, 3.0e8]])
@@ -44,7 +44,7 @@ def test_growth_in_time_is_that_of_the_least_stable_mode(mass):
     rotor = Rotor.jeffcott(mass, 4e8, 20.0)
     found = modes(Machine(rotor, [("journal", ConstantSupport(K, C))]), SPEED)
     least = found.eigenvalues[0, found.least_stable[0]]
-    measured = fit_modes(orbit_of(rotor, 10.0, push=1e-9)).eigenvalues
+    measured = _fit_modes(orbit_of(rotor, 10.0, push=1e-9)).eigenvalues
     nearest = measured[np.abs(measured - complex(least.real, abs(least.imag))).argmin()]
     assert nearest.real == pytest.approx(found.largest_growth_rate[0], rel=5e-3)
     assert nearest.imag == pytest.approx(abs(least.imag), rel=5e-3)

@@ -11,14 +11,14 @@ from rotorsim.machine.support import ConstantSupport
 from rotorsim.machine.thresholds import critical_speeds, threshold_speeds
 from rotorsim.model.shaft import Disc, Material, Section
 from rotorsim.rotor import Beam, Rotor, beam_rotor
-from rotorsim.rotor.beam import mesh_change, shear_coefficient
+from rotorsim.rotor.beam import _shear_coefficient, mesh_change
 from rotorsim.threads import on_one_blas_thread
 
 STEEL = Material(210e9, 7800.0)
 LENGTH, DIAMETER = 1.2, 0.08
 AREA, SECOND = np.pi * DIAMETER**2 / 4.0, np.pi * DIAMETER**4 / 64.0
 BENDING, PER_LENGTH = STEEL.youngs_modulus * SECOND, STEEL.density * AREA
-SHEAR = float(shear_coefficient(0.0, 0.3)) * STEEL.shear * AREA
+SHEAR = float(_shear_coefficient(0.0, 0.3)) * STEEL.shear * AREA
 
 
 def uniform(elements: int = 8, **changes) -> Beam:
@@ -65,8 +65,8 @@ def test_axial_force_stiffens_or_softens(share):
 
 
 def test_shear_coefficient_of_a_solid_shaft_and_of_a_thin_tube():
-    assert shear_coefficient(0.0, 0.3) == pytest.approx(6.0 * 1.3 / 8.8)
-    assert shear_coefficient(1.0, 0.3) == pytest.approx(2.0 * 1.3 / (4.0 + 0.9))
+    assert _shear_coefficient(0.0, 0.3) == pytest.approx(6.0 * 1.3 / 8.8)
+    assert _shear_coefficient(1.0, 0.3) == pytest.approx(2.0 * 1.3 / (4.0 + 0.9))
 
 
 def test_a_cone_has_its_mass_and_the_frequencies_of_fine_steps():

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from closed_forms import flexible_critical_mass
 from scipy.optimize import brentq
 
 from rotorsim.bearing.whirl import (
-    flexible_critical_mass,
     rigid_threshold,
     rigid_thresholds,
     routh_coefficients,

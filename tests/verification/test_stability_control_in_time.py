@@ -5,8 +5,13 @@ import pytest
 
 from rotorsim.bearing.interpolation import Coefficients
 from rotorsim.bearing.whirl import rigid_threshold
-from rotorsim.machine.actuator import ActuatedForce
-from rotorsim.machine.control import StateFeedback, design_lqr, design_pd, loop_margins
+from rotorsim.machine.control import (
+    ActuatedForce,
+    StateFeedback,
+    design_lqr,
+    design_pd,
+    loop_margins,
+)
 from rotorsim.machine.statespace import state_space
 from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, simulate
 from rotorsim.orbit.forces import find_equilibrium, linearize_force

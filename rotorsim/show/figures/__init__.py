@@ -4,7 +4,6 @@ Matplotlib is imported with this package: import it where a figure is drawn. `sa
 PNG and SVG.
 """
 
-from .animation import animate_orbits, can_write_mp4
 from .bearing import coefficients_over_speed, film_maps, film_profiles, thresholds_over_speed
 from .machine import (
     bode_at_probes,
@@ -16,7 +15,14 @@ from .machine import (
     rotor_drawing,
 )
 from .map import stability_map
-from .orbits import bode_plot, orbit_plot, spectrum_cascade, spectrum_plot
+from .orbits import (
+    animate_orbits,
+    bode_plot,
+    can_write_mp4,
+    orbit_plot,
+    spectrum_cascade,
+    spectrum_plot,
+)
 from .stability import campbell_diagram, eigenvalue_plot, root_locus, tolerance_histograms
 from .style import figure_bytes, save_figure
 

@@ -187,11 +187,11 @@ def send_eigenvalues(
         )
         for entity, (run, rows) in zip(entities, shown, strict=True):
             stream.log(entity, style, static=True)
-            values = eigenvalues_at(curve, run.orbit.speed[rows])
+            values = _eigenvalues_at(curve, run.orbit.speed[rows])
             _send_points(stream, entity, chart, run_index(run, rows), values)
 
 
-def eigenvalues_at(curve: Campbell, speed: Array) -> NDArray[np.complex128]:
+def _eigenvalues_at(curve: Campbell, speed: Array) -> NDArray[np.complex128]:
     """Eigenvalues between the tabulated speeds, (n, k) [1/s]; held at both ends."""
     known = curve.branches.parameter
     parts = [

@@ -112,7 +112,7 @@ def send_run(
         stream.send_columns(entity, run_index(run, part), columns(part))
 
 
-def frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[_Indices, _Indices]:
+def _frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[_Indices, _Indices]:
     """When a run passes from one tabulated speed to the next.
 
     frame_speeds : array_like (k,). Tabulated speeds [rad/s].
@@ -146,7 +146,7 @@ def indices_of_frames(
         turns = np.interp(times, run.orbit.t, run.orbit.revolutions)
         index = [_time_index(times), _revolution_index(turns)]
         return [*places, (index, known.size + np.arange(times.size))]
-    rows, numbers = frame_rows(run, known)
+    rows, numbers = _frame_rows(run, known)
     return [*places, (run_index(run, rows), numbers)]
 
 

@@ -43,7 +43,7 @@ class Series:
     high: float | None = None
 
 
-def whirl_ratio(orbit: Orbit, revolutions: float = 4.0) -> Array:
+def _whirl_ratio(orbit: Orbit, revolutions: float = 4.0) -> Array:
     """Count turns of the journal's velocity per turn of the shaft.
 
     The velocity turns as often as the journal goes round, wherever the orbit's centre is: that
@@ -96,13 +96,13 @@ MINIMUM_FILM = Series(
     "minimum_film_um", "Minimum film thickness [µm]", lambda orbit: orbit.min_film * _MICRO, 0.0
 )
 SPEED_SERIES = Series("speed_rpm", "Shaft speed [rpm]", lambda orbit: orbit.speed * RPM, 0.0)
-WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", whirl_ratio, 0.0, 1.2)
+WHIRL = Series("whirl_ratio", "Whirl frequency / shaft frequency [-]", _whirl_ratio, 0.0, 1.2)
 _ALL_SERIES = (
     LOAD, ACTUATOR_FORCE, DISPLACEMENT, _DISC, ECCENTRICITY, MINIMUM_FILM, SPEED_SERIES, WHIRL,
 )  # fmt: skip
 
 
-def envelope_rows(values: Array, limit: int = _ENVELOPE_LIMIT) -> _Indices:
+def _envelope_rows(values: Array, limit: int = _ENVELOPE_LIMIT) -> _Indices:
     """Choose samples that keep every stretch's extremes: about `limit` at most, in order."""
     count = values.size
     if count <= limit:
@@ -129,7 +129,7 @@ def log_series(stream: rr.RecordingStream, run: Run) -> None:
         if values is None:
             continue
         if values.ndim == 1:
-            rows = envelope_rows(values)
+            rows = _envelope_rows(values)
             _send(stream, series, run, values[:, None], rows, [run.heading], [colour])
         else:
             unit = series.title[series.title.index("[") :]
