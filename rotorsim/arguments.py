@@ -8,11 +8,7 @@ from typing import Any
 
 from .errors import InputError
 
-_HOW = {
-    "rad/s": "; from rpm: rpm * 3.14159 / 30",
-    "m": "; from um: um * 1e-6",
-    "kg": "",
-}
+_HOW = {"rad/s": "; from rpm: rpm * 3.14159 / 30", "m": "; from um: um * 1e-6", "kg": ""}
 
 
 def refuse_path(value: object, key: str = "scenario") -> None:

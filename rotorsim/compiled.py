@@ -20,7 +20,6 @@ import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
 _PLAIN = (bool, int, float, complex, str, bytes, type(None), np.generic)
 _DIGEST = hashlib.sha256().digest_size
 _told = False

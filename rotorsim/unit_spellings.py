@@ -18,7 +18,6 @@ _DEGREES = re.compile(r"(?:°|\bdeg\.?)\s*([CFK])(?![A-Za-z])")
 _POWER = re.compile(r"(?<=[A-Za-z])([+-]?[0-9])")
 _PRODUCT_SIGN = re.compile(r"(?<=[A-Za-z0-9)])\s*[.-]\s*(?=[A-Za-z(])")
 _NAME = re.compile(r"[A-Za-z_]+")
-
 _NAMES = {
     "mil": "thou",
     "mils": "thou",

@@ -87,7 +87,6 @@ _LONGEST_NAME = 100
 """Characters in a header's cell."""
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 """How a cell begins that a spreadsheet program would evaluate."""
-
 _Row = dict[str, float | str]
 _Line = tuple[int, list[str]]
 """Number of a line in the file, and its cells."""

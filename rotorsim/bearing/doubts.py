@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from .table import CoefficientTable
 
 Array = NDArray[np.float64]
-
 _PLAUSIBLE_WHIRL = (0.1, 2.0)
 """Whirl frequency at the threshold over shaft speed; films of oil whirl at about one half."""
 _PLAUSIBLE_MASS = (1e-2, 1e7)

@@ -14,7 +14,6 @@ from ..errors import InputError
 from ..status import Stability
 
 Array = NDArray[np.float64]
-
 _ROUNDING = 1e-10
 """Of the norms of K and C: a smaller coefficient of s is what films' rounding errors leave."""
 
@@ -230,7 +229,6 @@ def rigid_threshold(
 
 
 ComplexArray = NDArray[np.complex128]
-
 _RATIOS = np.linspace(0.0, 2.5, 51)
 """Whirl over shaft frequencies at which the film is solved; from the last on K and C are kept."""
 _FINE = np.linspace(0.0, _RATIOS[-1], 5001)[1:]

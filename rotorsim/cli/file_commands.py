@@ -148,7 +148,7 @@ def new(
     output.show(
         f"{path} is written. Put your numbers in, then:\n"
         f"  rotorsim check {as_typed(path)}\n"
-        f"  rotorsim run {as_typed(path)}",
+        f"  rotorsim run {as_typed(path)}"
     )
     return DONE
 

@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
 _WEIGHT = -0.5 * math.pi
 """Direction of the weight in the frame of ROSS [rad]: along -y."""
-
 _WEIGHT_FRAME = (
     "Frame of ROSS: z along the shaft, the shaft turning from x to y, y up; the static load is",
     "the weight, along -y.",

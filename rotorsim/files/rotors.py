@@ -29,9 +29,7 @@ _KNOWN_WORDS = "M, D or C (damping), G, K, H (circulatory), bearing_nodes, dofs_
 
 
 def load_rotor(
-    path: str | Path,
-    bearing_nodes: Sequence[int] | None = None,
-    dofs_per_node: int | None = None,
+    path: str | Path, bearing_nodes: Sequence[int] | None = None, dofs_per_node: int | None = None
 ) -> Rotor:
     """Read a rotor from .npz or .mat with M, D, G, K, H, ``bearing_nodes`` and ``dofs_per_node``.
 

@@ -19,7 +19,6 @@ from .operator import FilmOperator
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
 _factorise, _solve = get_lapack_funcs(("pbtrf", "pbtrs"), dtype=np.float64)
 
 

@@ -142,11 +142,7 @@ def _breakpoints(bearing: Bearing) -> tuple[float, list[float]]:
 
 
 def _theta_faces(
-    bearing: Bearing,
-    position: tuple[float, float],
-    start: float,
-    breaks: list[float],
-    count: int,
+    bearing: Bearing, position: tuple[float, float], start: float, breaks: list[float], count: int
 ) -> Array:
     """Faces so that every break is one, cells shared out by the density of the mesh."""
     stretches = len(breaks) - 1

@@ -22,7 +22,6 @@ from .mesh import FilmMesh
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
 WEST, EAST, SOUTH, NORTH = 0, 1, 2, 3
 
 

@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 FORWARD = 0.1
 """Ratio of areas, orbit to circle, above which a whirl counts as forward (or backward)."""
 _MOVING = 0.05

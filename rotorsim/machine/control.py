@@ -15,7 +15,6 @@ from .matrices import state_matrix
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _NO_GAIN = 1e9
 """Factors of a loop gain above this are no factors any more."""
 _MOST_STATES = 12

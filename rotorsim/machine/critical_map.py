@@ -14,7 +14,6 @@ from .machine import Machine
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _FORWARD = {"x": 1.0, "y": -1j, "theta_x": 1j, "theta_y": 1.0}
 """Unknowns of a forward circular motion r: y = -i x; theta_x = -dy/dz = i r', theta_y = r'."""
 

@@ -20,7 +20,6 @@ from .support import cross_stiffness
 from .tracking import track_modes
 
 Array = NDArray[np.float64]
-
 _REACH = 10.0
 """Multiple of the anticipated stiffness up to which the decrement is followed (API 617)."""
 _MOST = 1e4

@@ -25,7 +25,6 @@ from .response import UnbalanceResponse
 from .thresholds import critical_speeds
 
 Array = NDArray[np.float64]
-
 _CRITICAL_AMPLIFICATION = 2.5
 """Amplification factor from which a peak is a critical speed."""
 _VIBRATION = 25.4e-6
@@ -229,7 +228,6 @@ def _largest(speed: Array, values: Array, between: tuple[float, float]) -> float
 
 
 ComplexArray = NDArray[np.complex128]
-
 _ANTINODE = 0.3
 """Of the largest deflection, from which a local maximum is excited."""
 _OVERHUNG = 0.1

@@ -8,7 +8,6 @@ from numpy.typing import ArrayLike, NDArray
 from ..errors import InputError
 
 Array = NDArray[np.float64]
-
 _SINGULAR = 1e12
 """Condition number from which the damping of massless unknowns counts as singular."""
 

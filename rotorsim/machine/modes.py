@@ -16,7 +16,6 @@ from .tracking import track_modes
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _FEWEST = 12
 """Pairs of modes of a large machine, at least."""
 _REACH = 3.0

@@ -19,7 +19,6 @@ from .thresholds import critical_speeds
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _HALF_POWER = 0.5**0.5
 """Of the peak: where the amplification factor's speeds N_1 and N_2 are taken (API 684)."""
 _POINTS = 400

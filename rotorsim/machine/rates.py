@@ -13,7 +13,6 @@ from ..errors import InputError
 from .matrices import state_matrix
 
 Array = NDArray[np.float64]
-
 _BLOCK = 65536
 """Systems handed to the dense eigenvalue solver at once; bounds its memory."""
 

@@ -13,8 +13,6 @@ from .machine import Machine
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
-
 _AT_ONCE = 64
 """Speeds whose matrices are held at once; bounds the memory."""
 

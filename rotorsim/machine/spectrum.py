@@ -16,7 +16,6 @@ from .machine import Machine
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 _MatrixOf = Callable[[float], Array]
-
 _ROUNDINGS = 10.0
 """Size of the error of an eigenvalue solver and of the matrices, in roundings of their norm."""
 _DENSE = 48

@@ -20,7 +20,6 @@ Array = NDArray[np.float64]
 Law = Callable[[Array], tuple[Array, Array]]
 """Load (2,) [N] on a support to the journal's displacement (2,) [m] and its derivative
 (2, 2) [m/N]."""
-
 _MAX_STEPS = 60
 _TOLERANCE = 1e-6
 """Of the reactions, relative to the load of the whole rotor; a heated film's force is known to some

@@ -17,7 +17,6 @@ from .modes import machine_spectrum, modes
 from .spectrum import Eigenmodes, Spectrum
 
 Array = NDArray[np.float64]
-
 CRITICAL_DAMPING = 0.5**0.5
 """Damping ratio from which an unbalance response has no peak: no critical speed."""
 

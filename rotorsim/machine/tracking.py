@@ -15,7 +15,6 @@ from .spectrum import Eigenmodes, Spectrum
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _SAME_VALUE = 1e-6
 """Relative distance of eigenvalues that count as one multiple eigenvalue."""
 _SMOOTH_MAC = 0.9

@@ -148,7 +148,6 @@ NEEDED = Key("<needed>")
 """Marks a parameter whose default is not that of a file, which must give it."""
 NOT_IN_FILES = Key("<none>")
 """Marks a field that no file sets."""
-
 Length = Annotated[float, Quantity("length", "50 mm")]
 Clearance = Annotated[float, Quantity("length", "100 um")]
 Displacement = Annotated[float, Quantity("length", "1 um", "any")]

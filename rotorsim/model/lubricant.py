@@ -13,13 +13,10 @@ from ..errors import InputError
 from .entries import Example, Leaf, Number, Quantity, Temperature, check
 
 ZERO_CELSIUS = 273.15
-
-
 _LEAST_KINEMATIC = 0.35e-6
 """Below this [m2/s] the Walther law means nothing."""
 _TYPICAL = {"density": 860.0, "specific_heat": 2000.0, "thermal_conductivity": 0.13}
 """Of a mineral oil, SI: used where they do not enter (an isothermal film's forces)."""
-
 _DynamicViscosity = Annotated[float, Quantity("dynamic viscosity")]
 _Coefficient = Annotated[
     float, Quantity("temperature coefficient", "0.034 / delta_degC", "not_negative")
@@ -93,10 +90,7 @@ class WaltherViscosity:
 
     @classmethod
     def from_points(
-        cls,
-        first: tuple[float, float],
-        second: tuple[float, float],
-        density: float,
+        cls, first: tuple[float, float], second: tuple[float, float], density: float
     ) -> WaltherViscosity:
         """Through two points (temperature [K], dynamic viscosity [Pa s])."""
         (t1, mu1), (t2, mu2) = sorted((first, second))
@@ -313,10 +307,7 @@ def oil(
 
 
 def _exponential(
-    viscosity: Viscosity,
-    reference: float | None,
-    coefficient: float | None,
-    density: float | None,
+    viscosity: Viscosity, reference: float | None, coefficient: float | None, density: float | None
 ) -> ExponentialViscosity:
     mu = viscosity.value
     if viscosity.is_kinematic:
@@ -348,7 +339,6 @@ def _through(points: tuple[_Point, _Point], density: float) -> WaltherViscosity:
 def _needed(value: float | None, name: str, reason: str, example: str) -> float:
     if value is None:
         raise InputError(
-            f'is missing: {reason}; write for example {name} = "{example}"',
-            key=f"lubricant.{name}",
+            f'is missing: {reason}; write for example {name} = "{example}"', key=f"lubricant.{name}"
         )
     return value

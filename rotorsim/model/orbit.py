@@ -8,16 +8,7 @@ from enum import StrEnum
 from typing import Annotated
 
 from ..errors import InputError
-from .entries import (
-    Clearance,
-    Duration,
-    Example,
-    Number,
-    Pair,
-    Quantity,
-    Speed,
-    check,
-)
+from .entries import Clearance, Duration, Example, Number, Pair, Quantity, Speed, check
 from .loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
 
 

@@ -259,12 +259,9 @@ PIVOTS: dict[str, type[Pivot]] = {
     kind.kind: kind for kind in (RigidPivot, SpringPivot, LinePivot, SpherePivot, SocketPivot)
 }
 """Every kind of pivot, by its name in a file."""
-
-
 FULL_TURN = 2.0 * math.pi
 STEEL_DENSITY = 7850.0
 """[kg/m3]"""
-
 Extent = Annotated[float, Quantity("angle", "60 deg")]
 Thickness = Annotated[float, Quantity("length", "20 mm")]
 PivotOffset = Annotated[

@@ -22,7 +22,6 @@ from .spectrum import (
 )
 
 Array = NDArray[np.float64]
-
 _SMALL_MOTION = 0.1
 """Distance from equilibrium over clearance up to which a growth rate is measured."""
 WHIRLING = 0.05
@@ -32,7 +31,6 @@ _GROWTH_REVOLUTIONS = 4
 _CASCADE_REVOLUTIONS = 16
 _CASCADE_BLOCKS = (16, 32)
 """Revolutions behind one spectrum of a cascade that is shown: of a short and of a long run."""
-
 _AT_REST = 1e-4
 """Motion over clearance that counts as none."""
 _STEADY = 2e-3

@@ -37,7 +37,6 @@ from .forces import CompiledForce, squeeze_force_scale
 Array = NDArray[np.float64]
 _Impedance = Callable[[float, float], tuple[float, float]]
 """(eccentricity ratio, alpha [rad]) -> (radial, tangential) in units of 2 mu |v_s| L (R/c)^3."""
-
 _MIRRORED_ROWS = 8
 
 

@@ -12,7 +12,6 @@ from .orbit import Orbit
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _SAMPLES_PER_REVOLUTION = 16
 _DELAYS = 32
 _COLUMNS = 2000

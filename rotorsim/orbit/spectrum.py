@@ -18,7 +18,6 @@ from .orbit import Orbit
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _HARMONICS = np.arange(-4, 5)
 _MAX_REVOLUTIONS = 256
 

@@ -20,7 +20,6 @@ from ..threads import on_one_blas_thread
 from .rotor import Node, Rotor
 
 Array = NDArray[np.float64]
-
 _MIN_ELEMENTS = 20
 """Of the whole shaft, where the mesh rule decides."""
 _SAME_PLACE = 1e-6

@@ -16,7 +16,6 @@ from ..model.entries import NEEDED, NOT_IN_FILES, Damping, Example, Mass, Stiffn
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "circulatory")
 _SYMMETRY = 1e-8
 """Relative size of an asymmetry that counts as an error of the input."""
@@ -245,10 +244,7 @@ class Rotor:
 
     @classmethod
     def rigid(
-        cls,
-        mass: Mass,
-        unbalance: Unbalance = 0.0,
-        phase: Annotated[float, NOT_IN_FILES] = 0.0,
+        cls, mass: Mass, unbalance: Unbalance = 0.0, phase: Annotated[float, NOT_IN_FILES] = 0.0
     ) -> Rotor:
         """Rigid symmetric shaft on two identical bearings, per bearing (Dal Eq. 21).
 

@@ -89,7 +89,6 @@ def _only(name: str, value: _Choice | None, choices: tuple[_Choice, ...]) -> _Ch
         return value
     if len(choices) != 1:
         raise InputError(
-            f"must be given: the scenario leaves the choice between {len(choices)} values",
-            key=name,
+            f"must be given: the scenario leaves the choice between {len(choices)} values", key=name
         )
     return choices[0]

@@ -157,10 +157,7 @@ def stability_curves(
 
 
 def _curve(
-    table: CoefficientTable,
-    index: tuple[int, ...],
-    choices: dict[str, Any],
-    rotor: Rotor | None,
+    table: CoefficientTable, index: tuple[int, ...], choices: dict[str, Any], rotor: Rotor | None
 ) -> StabilityCurve:
     from ..bearing.whirl import rigid_thresholds
 
@@ -169,11 +166,7 @@ def _curve(
     stiffness, damping = table.stiffness[index] * blank, table.damping[index] * blank
     load = table.dataset["load"].values[index] if "load" in table.dataset else None
     found = rigid_thresholds(
-        stiffness,
-        damping,
-        table.speeds,
-        load=load,
-        radial_clearance=choices["radial_clearance"],
+        stiffness, damping, table.speeds, load=load, radial_clearance=choices["radial_clearance"]
     )
     verdict = {
         name: getattr(found, name)

@@ -110,7 +110,6 @@ def _result_or_failure(
 
 Progress = Callable[[int, int, OperatingPoint], None]
 """Called with the number of points done, the number in all, and the point just finished."""
-
 CHUNK = 5
 """Speeds solved one after the other by one worker: long enough for warm starts to pay, short enough
 for the work to spread evenly and for progress to move."""

@@ -46,8 +46,7 @@ def read_text(path: str | Path) -> str:
     except UnicodeDecodeError as error:
         line = data[: error.start].count(b"\n") + 1
         raise ScenarioError(
-            f"must be UTF-8 text; byte 0x{data[error.start]:02x} in line {line} is not",
-            source=path,
+            f"must be UTF-8 text; byte 0x{data[error.start]:02x} in line {line} is not", source=path
         ) from None
 
 

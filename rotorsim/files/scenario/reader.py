@@ -40,7 +40,6 @@ _PLAIN = {
     int: "must be a whole number, without quotes",
     str: "must be text in quotes",
 }
-
 _HALF = "half of the diametral one"
 _CLEARANCE = f"write radial_clearance, {_HALF}"
 _RADIUS = "write journal_radius, half of the diameter"

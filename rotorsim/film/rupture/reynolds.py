@@ -20,7 +20,6 @@ from .base import ConnectedFilm, PressureSolution, source_term, with_fixed
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
 _MAX_ACTIVE_SET_STEPS = 400
 _COARSEST = 16
 """Cells around below which no coarser mesh is used for the first guess."""

@@ -7,12 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 # Okabe & Ito: told apart under every common colour blindness.
-_MODEL_COLOURS = {
-    "isothermal": (86, 180, 233),
-    "thd": (230, 159, 0),
-}
+_MODEL_COLOURS = {"isothermal": (86, 180, 233), "thd": (230, 159, 0)}
 _OTHER_COLOURS = ((0, 158, 115), (204, 121, 167), (240, 228, 66), (213, 94, 0))
-
 TEXT = (230, 230, 230)
 LINE = (150, 150, 150)
 FAINT = (80, 80, 80)

@@ -21,17 +21,13 @@ REVOLUTIONS = "milli-revolutions"
 """Thousandths of a turn of the shaft: the viewer's sequences are whole numbers."""
 SPEED = "speed_rpm"
 """Shaft speed in whole rpm: frames of the film and of the eigenvalues."""
-
 _CHUNK_ROWS = 32_768
 SAMPLE_LIMIT = 1_000_000
 """More samples than this of one run are thinned to every second, third, ... one."""
 _MOVING_LIMIT = 1_000
 """Positions of a point that follows the speed of a run-up."""
-
 _Indices = NDArray[np.intp]
 _Columns = Callable[[_Indices], Iterable[Any]]
-
-
 Array = NDArray[np.float64]
 
 
