@@ -18,9 +18,8 @@ from rotorsim.errors import InputError
 from rotorsim.show import viewer
 from rotorsim.show.recording import RecordingContents, surfaces, write_recording
 from rotorsim.show.recording.charts import _eigenvalues_at
-from rotorsim.show.recording.colours import colours
-from rotorsim.show.recording.runs import Run, _frame_rows, thin
-from rotorsim.show.recording.series_view import _envelope_rows, _whirl_ratio
+from rotorsim.show.recording.orbit_view import _envelope_rows, _whirl_ratio
+from rotorsim.show.recording.runs import Run, _frame_rows, colours, thin
 from rotorsim.study.orbits import FilmFrame
 
 C = 1e-4
@@ -206,7 +205,7 @@ def test_a_failure_leaves_the_old_file(tmp_path, monkeypatch):
     def fail(*_):
         raise RuntimeError("stop")
 
-    monkeypatch.setattr("rotorsim.show.recording.write.log_contents", fail)
+    monkeypatch.setattr("rotorsim.show.recording.write._log_contents", fail)
     with pytest.raises(RuntimeError):
         write_recording(file, contents())
     assert file.read_bytes() == b"old"

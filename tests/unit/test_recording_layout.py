@@ -13,9 +13,9 @@ from sample_results import orbit_of
 from rotorsim.model.orbit import OrbitKind
 from rotorsim.orbit import Orbit
 from rotorsim.show.recording import RecordingContents, write_recording
-from rotorsim.show.recording.film_view import changing, quantities
+from rotorsim.show.recording.film_view import _changing, quantities
+from rotorsim.show.recording.orbit_view import MINIMUM_FILM, _whirl_ratio
 from rotorsim.show.recording.runs import Run, distinct_speeds
-from rotorsim.show.recording.series_view import MINIMUM_FILM, _whirl_ratio
 from rotorsim.study.orbits import FilmFrame
 
 COUNT = 801
@@ -94,7 +94,7 @@ def test_each_kind_opens_with_what_it_is_about(tmp_path, kind, shown, hidden):
 
 
 def test_every_kind_of_orbit_is_among_them():
-    from rotorsim.show.recording.layout import FRONTS
+    from rotorsim.show.recording.write import FRONTS
 
     assert set(FRONTS) == {kind.value for kind in OrbitKind}
 
@@ -129,9 +129,9 @@ def test_one_moment_of_contact_leaves_the_others_their_colours():
 def test_a_temperature_that_is_kept_is_written_once():
     warm = np.full((40, 8), 320.0)
     frames = [film(None, temperature=warm), *(film(0.1 * k, temperature=warm) for k in range(5))]
-    assert [frame.time for frame in changing(frames)] == [None]
+    assert [frame.time for frame in _changing(frames)] == [None]
     moving = frames[1:]
-    assert [frame.time for frame in changing(moving)] == [0.0]
+    assert [frame.time for frame in _changing(moving)] == [0.0]
 
 
 def test_whirl_ratio_needs_no_centre_and_knows_rest():

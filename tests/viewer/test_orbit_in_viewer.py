@@ -9,7 +9,7 @@ from viewer_pictures import assert_healthy, circle_of, dot_of, near
 
 from rotorsim.files.scenario import load_scenario
 from rotorsim.show.recording import live
-from rotorsim.show.recording.colours import colours
+from rotorsim.show.recording.runs import colours
 from rotorsim.study.orbits import simulate_orbit
 
 pytestmark = pytest.mark.slow

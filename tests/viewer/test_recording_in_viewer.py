@@ -37,7 +37,7 @@ def test_revolutions_timeline_moves_the_journal_too(open_page, contents):
 
 
 def test_film_is_coloured_and_changes_with_speed(open_page):
-    from rotorsim.show.recording.colours import colours
+    from rotorsim.show.recording.runs import colours
 
     viewer = open_page("Film")
     warm = []

@@ -19,8 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...rows import QUANTITIES
 from ...study.stability import Campbell
 from ..figures.style import figure_bytes
-from .colours import ALARM
-from .runs import Run, distinct_speeds, run_index, runs_named, speed_index, tick_text
+from .runs import ALARM, Run, distinct_speeds, run_index, runs_named, speed_index, tick_text
 
 if TYPE_CHECKING:
     import xarray as xr

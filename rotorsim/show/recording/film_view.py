@@ -18,8 +18,18 @@ from ...orbit.description import run_title
 from ...rows import QUANTITIES, RPM, ZERO_CELSIUS
 from ...study.orbits import FilmFrame
 from . import surfaces
-from .colours import LINE, TEXT, colours
-from .runs import Run, indices_of_frames, pick_run, send_run, speed_index, thin, tick_text
+from .runs import (
+    LINE,
+    TEXT,
+    Run,
+    colours,
+    indices_of_frames,
+    pick_run,
+    send_run,
+    speed_index,
+    thin,
+    tick_text,
+)
 
 Array = NDArray[np.float64]
 _MOVING_SHARE = 0.95
@@ -106,11 +116,11 @@ def log_films(stream: rr.RecordingStream, films: Sequence[FilmFrame], runs: Sequ
         for quantity in scales:
             if shows(quantity, frames):
                 _log_scale(stream, f"{root}/{quantity.name}", quantity, frames[0])
-                shown = frames if quantity.name == "pressure" else changing(frames)
+                shown = frames if quantity.name == "pressure" else _changing(frames)
                 _send_frames(stream, f"{root}/{quantity.name}", quantity, shown, runs)
 
 
-def changing(frames: Sequence[FilmFrame]) -> list[FilmFrame]:
+def _changing(frames: Sequence[FilmFrame]) -> list[FilmFrame]:
     """Frames without those whose temperature is that of the frame before (it is kept in a run)."""
     before = [None, *frames[:-1]]
     return [

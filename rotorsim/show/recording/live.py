@@ -15,8 +15,16 @@ from ...errors import InputError
 from ...orbit import Orbit
 from ...orbit.orbit import concatenate
 from ..viewer import has_display, viewer_program
-from . import series_view
-from .orbit_view import log_orbit_piece, log_surroundings, orbit_view
+from .orbit_view import (
+    DISPLACEMENT,
+    ECCENTRICITY,
+    WHIRL,
+    log_orbit_piece,
+    log_series,
+    log_surroundings,
+    orbit_view,
+    series_view,
+)
 from .runs import TIME, Run, runs_of
 from .write import APPLICATION
 
@@ -64,15 +72,15 @@ class LiveView:
             run = run._replace(orbit=concatenate([before.orbit.part(-1), piece]))
             self.last[run.name] = run
         log_orbit_piece(self.stream, run)
-        series_view.log_series(self.stream, run)
+        log_series(self.stream, run)
 
     def _layout(self) -> rrb.Blueprint:
         runs: Sequence[Run] = list(self.last.values())
-        plots = (series_view.DISPLACEMENT, series_view.ECCENTRICITY, series_view.WHIRL)
+        plots = (DISPLACEMENT, ECCENTRICITY, WHIRL)
         return rrb.Blueprint(
             rrb.Horizontal(
                 rrb.Horizontal(*[orbit_view(run) for run in runs]),
-                rrb.Vertical(*[series_view.series_view(one, runs) for one in plots]),
+                rrb.Vertical(*[series_view(one, runs) for one in plots]),
                 name=self.title,
             ),
             rrb.TimePanel(state="collapsed", timeline=TIME, play_state="following"),

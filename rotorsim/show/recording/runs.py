@@ -1,10 +1,11 @@
-"""Runs by name on their timelines, and how samples reach the file: columns of arrays in chunks."""
+"""Runs by name on their timelines, their colours, and how samples reach the file in chunks."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
+import matplotlib as mpl
 import numpy as np
 import rerun as rr
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,14 @@ from ...orbit import Orbit
 from ...orbit.description import run_names, run_title
 from ...rows import RPM
 from ...study.orbits import FilmFrame
-from .colours import TEXT
+
+# Okabe & Ito: told apart under every common colour blindness.
+_MODEL_COLOURS = {"isothermal": (86, 180, 233), "thd": (230, 159, 0)}
+_OTHER_COLOURS = ((0, 158, 115), (204, 121, 167), (240, 228, 66), (213, 94, 0))
+TEXT = (230, 230, 230)
+LINE = (150, 150, 150)
+FAINT = (80, 80, 80)
+ALARM = (255, 80, 60)
 
 TIME = "time"
 """Seconds of the simulation."""
@@ -203,3 +211,24 @@ def log_labels(
         rr.Points2D(places, labels=texts, show_labels=True, radii=0.0, colors=colour),
         static=True,
     )
+
+
+def colours(values: ArrayLike, low: float, high: float, name: str = "viridis") -> NDArray[np.uint8]:
+    """Colour each value.
+
+    values : array_like, any shape
+    low, high : Ends of the scale; values beyond take the end's colour, NaN is grey.
+    name : Of a Matplotlib colormap.
+    Returns (..., 4) array of uint8: Red, green, blue and full opacity.
+    """
+    table = mpl.colormaps[name].with_extremes(bad="#808080")
+    span = high - low if high > low else 1.0
+    return table(np.ma.masked_invalid((np.asarray(values, dtype=float) - low) / span), bytes=True)
+
+
+def model_colour(name: str) -> tuple[int, int, int]:
+    """One colour for all that belongs to one model or run, the same in every view."""
+    for model, colour in _MODEL_COLOURS.items():
+        if name == model or name.startswith(f"{model}_"):
+            return colour
+    return _OTHER_COLOURS[sum(name.encode()) % len(_OTHER_COLOURS)]
