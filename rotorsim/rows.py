@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from html import escape
 from typing import Any, NamedTuple
 
+from .errors import InputError
+
 RPM = 30.0 / math.pi
 """Revolutions per minute in one rad/s."""
 ZERO_CELSIUS = 273.15
@@ -32,21 +34,98 @@ def number(value: float | None, digits: int = 4) -> str:
     return f"{value:.{digits}g}" if abs(value) < 10.0**digits - 0.5 else f"{value:.0f}"
 
 
+_US = {
+    "µm": ("mil", 1.0 / 25.4, 0.0),
+    "kN": ("lbf", 1e3 / 4.4482216152605, 0.0),
+    "N": ("lbf", 1.0 / 4.4482216152605, 0.0),
+    "kg": ("lb", 1.0 / 0.45359237, 0.0),
+    "kPa": ("psi", 1e3 / 6894.757293168, 0.0),
+    "MPa": ("psi", 1e6 / 6894.757293168, 0.0),
+    "°C": ("°F", 1.8, 32.0),
+    "kW": ("hp", 1e3 / 745.69987158227, 0.0),
+    "L/min": ("gal/min", 1.0 / 3.785411784, 0.0),
+    "mm": ("in", 1.0 / 25.4, 0.0),
+    "N/m": ("lbf/in", 0.0254 / 4.4482216152605, 0.0),
+    "N s/m": ("lbf s/in", 0.0254 / 4.4482216152605, 0.0),
+    "g mm": ("oz in", 1.0 / 28.349523125 / 25.4, 0.0),
+    "MN/m": ("klbf/in", 1e3 * 0.0254 / 4.4482216152605, 0.0),
+    "kN s/m": ("lbf s/in", 1e3 * 0.0254 / 4.4482216152605, 0.0),
+}
+"""US customary unit in place of one that is shown otherwise: its name, factor and offset."""
+_shown_in = ["si"]
+
+
+def show_units(system: str) -> None:
+    """Show results in the units of a system from now on: ``si`` or ``us``.
+
+    Raises
+    ------
+    InputError
+        No such system.
+    """
+    if system not in ("si", "us"):
+        raise InputError("must be si or us", key="units", value=system)
+    _shown_in[0] = system
+
+
+def units_shown() -> str:
+    """Return the system of `show_units`."""
+    return _shown_in[0]
+
+
+def shown_unit(unit: str) -> tuple[str, float, float]:
+    """Unit that a value in `unit` is shown in, the factor and the offset that lead to it."""
+    return _US.get(unit, (unit, 1.0, 0.0)) if _shown_in[0] == "us" else (unit, 1.0, 0.0)
+
+
+def axis_title(label: str, unit: str) -> str:
+    """Title of a figure's axis: ``pressure [psi]`` where the unit given is MPa and US is shown."""
+    return f"{label} [{shown_unit(unit)[0]}]"
+
+
+def in_shown_unit(value: Any, unit: str) -> Any:
+    """Values (a number or an array) in `unit`, in the unit that is shown in its place."""
+    _, factor, zero = shown_unit(unit)
+    return value * factor + zero
+
+
+def with_unit(value: float, unit: str, digits: int = 4) -> str:
+    """Short text of a value in `unit`, written in the unit that is shown in its place."""
+    return f"{number(in_shown_unit(value, unit), digits)} {shown_unit(unit)[0]}"
+
+
 @dataclass(frozen=True)
 class _Quantity:
-    """How a quantity is shown: the value times `factor` plus `offset`, in `unit`.
+    """How a quantity is shown.
 
     label, symbol : In words, and short for the head of a column.
-    factor, offset : From SI to `unit`.
+    base : Unit where nothing else is asked for; `unit` is the one shown.
+    to_base, base_zero : Factor and offset from SI to `base`.
     digits : In tables.
     """
 
     label: str
     symbol: str
-    unit: str = ""
-    factor: float = 1.0
-    offset: float = 0.0
+    base: str = ""
+    to_base: float = 1.0
+    base_zero: float = 0.0
     digits: int = 4
+
+    @property
+    def unit(self) -> str:
+        """Unit shown, see `show_units`."""
+        return shown_unit(self.base)[0]
+
+    @property
+    def factor(self) -> float:
+        """Factor from SI to `unit`."""
+        return self.to_base * shown_unit(self.base)[1]
+
+    @property
+    def offset(self) -> float:
+        """Offset of `unit`, after the factor."""
+        _, factor, zero = shown_unit(self.base)
+        return self.base_zero * factor + zero
 
     @property
     def head(self) -> str:

@@ -9,7 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..rows import QUANTITIES, RPM, Row, facts_html, number, result_html, table_html
+from ..rows import (
+    QUANTITIES,
+    RPM,
+    Row,
+    facts_html,
+    in_shown_unit,
+    number,
+    result_html,
+    shown_unit,
+    table_html,
+)
 
 if TYPE_CHECKING:
     from .operating_point import OperatingPoint
@@ -105,7 +115,12 @@ def point_rows(point: OperatingPoint) -> list[Row]:
 def matrix_rows(point: OperatingPoint) -> list[tuple[str, str, str, str]]:
     """K and C row by row: name, two values, unit."""
     return [
-        (f"{letter} {axis}x {axis}y", f"{row[0]:.5g}", f"{row[1]:.5g}", unit)
+        (
+            f"{letter} {axis}x {axis}y",
+            f"{in_shown_unit(row[0], unit):.5g}",
+            f"{in_shown_unit(row[1], unit):.5g}",
+            shown_unit(unit)[0],
+        )
         for letter, matrix, unit in (("K", point.stiffness, "N/m"), ("C", point.damping, "N s/m"))
         for axis, row in zip("xy", np.asarray(matrix), strict=True)
     ]
@@ -122,16 +137,18 @@ def point_html(point: OperatingPoint) -> str:
 
 
 def coefficient_tables(table: CoefficientTable) -> Iterator[tuple[str, list[list[str]]]]:
-    """For each curve of a table its title and, under `COEFFICIENT_HEAD`, K [MN/m], C [kN s/m]."""
+    """Yield for each curve of a table its title and the rows under `COEFFICIENT_HEAD`."""
+    units = f"K in {shown_unit('MN/m')[0]}, C in {shown_unit('kN s/m')[0]}"
     for index in np.ndindex(table.converged.shape[:-1]):
         names = {
             name: table.dataset[name].values[place]
             for name, place in zip(table.choices, index, strict=True)
         }
         title = curve_title(str(names["thermal_model"]), float(names["radial_clearance"]))
-        stiffness, damping = table.stiffness[index] / 1e6, table.damping[index] / 1e3
+        stiffness = in_shown_unit(table.stiffness[index] / 1e6, "MN/m")
+        damping = in_shown_unit(table.damping[index] / 1e3, "kN s/m")
         yield (
-            title,
+            f"{title}: {units}",
             [
                 [f"{speed * RPM:.0f}", *(number(float(v)) for v in (*k.ravel(), *c.ravel()))]
                 for speed, k, c in zip(table.speeds, stiffness, damping, strict=True)
@@ -151,7 +168,7 @@ def table_html_of(table: CoefficientTable) -> str:
         str(table.dataset.attrs.get("title", "Coefficient table")),
         f"<p>{sizes}; {low:.0f} to {high:.0f} rpm; {good} of {total} points converged</p>",
         *(
-            table_html(COEFFICIENT_HEAD, rows, f"{title}: K in MN/m, C in kN s/m", texts=0)
+            table_html(COEFFICIENT_HEAD, rows, title, texts=0)
             for title, rows in coefficient_tables(shown)
         ),
     )

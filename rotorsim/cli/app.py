@@ -8,6 +8,7 @@ import typer
 
 from .. import __version__
 from .control_command import control
+from .explore_command import explore
 from .file_commands import export, new, view
 from .film_commands import check, report, run, solve, table
 from .orbit_command import orbit
@@ -53,6 +54,7 @@ for command in (
     control,
     orbit,
     report,
+    explore,
     view,
     export,
     new,

@@ -78,6 +78,11 @@ JsonOption = Annotated[
 QuietOption = Annotated[
     bool, typer.Option("--quiet", "-q", help="No progress, no tables; errors still show.")
 ]
+UnitsOption = Annotated[
+    str | None,
+    option("--units", "SYSTEM", "Show results in si or us (mil, lbf, psi, degF); files stay SI.",
+           "units in ~/.config/rotorsim/config.toml, else si"),
+]  # fmt: skip
 OutputFolder = Annotated[Path, option("--output -o", "DIR", "Folder for what is written.", "here")]
 WorkersOption = Annotated[
     int | None, option("--workers -w", "N", "Processes; 1: none extra.", "all cores")

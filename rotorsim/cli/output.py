@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from ..errors import InputError, RotorsimError
+from ..rows import show_units
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -118,16 +119,17 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
     """Make a command that returns its exit code safe to call: no traceback for what can go wrong.
 
     The command's first parameter is the `Output`; it is made from the options ``--json`` and
-    ``--quiet`` that `command` need not declare.
+    ``--quiet`` that `command` need not declare; ``--units`` sets what results are shown in.
     """
     import inspect
 
-    from .options import JsonOption, QuietOption
+    from .options import JsonOption, QuietOption, UnitsOption
 
     @functools.wraps(command)
-    def run(*, json_output: bool, quiet: bool, **options: Any) -> None:
+    def run(*, json_output: bool, quiet: bool, units: str | None, **options: Any) -> None:
         output = Output(json=json_output, quiet=quiet)
         try:
+            show_units(units or _usual_units())
             code = command(output, **options)
         except Exception as error:
             code = _explain(error, output)
@@ -143,11 +145,43 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
     common = [
         inspect.Parameter("json_output", keyword, default=False, annotation=JsonOption),
         inspect.Parameter("quiet", keyword, default=False, annotation=QuietOption),
+        inspect.Parameter("units", keyword, default=None, annotation=UnitsOption),
     ]
     del run.__wrapped__  # type: ignore[attr-defined]
     run.__signature__ = signature.replace(parameters=own + common)  # type: ignore[attr-defined]
     run.__annotations__ = {entry.name: entry.annotation for entry in own + common}
     return run
+
+
+def _usual_units() -> str:
+    """Units of the user's configuration; SI where there is none.
+
+    Raises
+    ------
+    InputError
+        The file is no TOML, or names something else.
+    """
+    import tomllib
+    from pathlib import Path
+
+    folder = os.environ.get("XDG_CONFIG_HOME") or os.path.expanduser("~/.config")
+    path = Path(folder) / "rotorsim" / "config.toml"
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError:
+        return "si"
+    try:
+        settings = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"is no TOML: {error}", source=str(path)) from None
+    units = settings.pop("units", "si")
+    if settings:
+        raise InputError(
+            "is unknown; the file may set units", source=str(path), key=next(iter(settings))
+        )
+    if units not in ("si", "us"):
+        raise InputError('must be "si" or "us"', source=str(path), key="units", value=units)
+    return units
 
 
 def _explain(error: Exception, output: Output) -> int:

@@ -21,7 +21,7 @@ from ..bearing.description import (
 )
 from ..model import ThermalModel
 from ..orbit.description import ORBIT_HEADS, ellipse_text, orbit_texts, whirl_range_text
-from ..rows import QUANTITIES, RPM, ZERO_CELSIUS, number
+from ..rows import QUANTITIES, RPM, number, shown_unit
 from ..study.inputs import input_rows
 from ..study.stability import late_whirl, verdict_word
 from .output import as_typed
@@ -41,6 +41,14 @@ _COLUMNS = (
     "speed", "eccentricity_ratio", "load", "min_film_thickness", "max_pressure",
     "max_temperature", "power_loss", "critical_mass",
 )  # fmt: skip
+
+
+_SMALL = QUANTITIES["radial_clearance"]
+"""How small lengths are shown."""
+
+
+def _head(symbol: str, unit: str) -> str:
+    return f"{symbol} {shown_unit(unit)[0]}"
 
 
 def grid(title: str, *columns: str) -> Table:
@@ -90,14 +98,14 @@ def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[Re
     """Inputs, derived numbers at the highest speed, and the amount of work."""
     yield _inputs(scenario)
     table = grid(
-        f"At {scenario.speeds[-1] * RPM:.0f} rpm", "model", "c µm", "U m/s", "Sommerfeld",
+        f"At {scenario.speeds[-1] * RPM:.0f} rpm", "model", _head("c", "µm"), "U m/s", "Sommerfeld",
         "Reynolds", "Taylor", "Peclet", "Nahme", "dT adiab. K",
     )  # fmt: skip
     numbers = ("sommerfeld", "reynolds", "taylor", "peclet", "nahme")
     for case in cases:
         table.add_row(
             case["thermal_model"].value,
-            number(case["radial_clearance"] * 1e6),
+            _SMALL.text(case["radial_clearance"]),
             number(case["surface_speed"]),
             *(number(case[f"{name}_number"]) for name in numbers),
             number(case["adiabatic_temperature_rise"], 3),
@@ -119,13 +127,14 @@ def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[Re
 
 def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
     """Flow numbers with the viscosity at supply temperature and in the estimated warm film."""
-    table = grid("Cold, and warm (estimated)", "c µm", "T °C", "mPa s", "Reynolds", "Taylor")
+    heads = (_head("c", "µm"), _head("T", "°C"))
+    table = grid("Cold, and warm (estimated)", *heads, "mPa s", "Reynolds", "Taylor")
     for case in cases:
-        cold = number(case["radial_clearance"] * 1e6), "supply_temperature", ""
+        cold = _SMALL.text(case["radial_clearance"]), "supply_temperature", ""
         for clearance, temperature, state in (cold, ("", "warm_temperature", "warm_")):
             table.add_row(
                 clearance,
-                number(case[temperature] - ZERO_CELSIUS, 3),
+                QUANTITIES["max_temperature"].text(case[temperature]),
                 number(case[f"{state}viscosity"] * 1e3),
                 number(case[f"{state}reynolds_number"]),
                 number(case[f"{state}taylor_number"]),
@@ -224,15 +233,16 @@ def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
 
 def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
     """What each run came to: whirl, ellipse, least film; and what its force takes for granted."""
-    table = grid("What they come to", "model", "whirl ratio", "swing µm", "ellipse µm", "h_min µm")
+    lengths = (_head(name, "µm") for name in ("swing", "ellipse", "h_min"))
+    table = grid("What they come to", "model", "whirl ratio", *lengths)
     notes = []
     for row in rows:
         table.add_row(
             row["thermal_model"],
             number(row["whirl_frequency_ratio"]),
-            number(row["amplitude"] * 1e6),
+            _SMALL.text(row["amplitude"], 4),
             ellipse_text(row["whirl"] or row["synchronous"]),
-            number(row["min_film"] * 1e6),
+            _SMALL.text(row["min_film"], 4),
         )
         if row["whirl_range"] is not None:
             notes.append(f"{row['thermal_model']}: {whirl_range_text(row['whirl_range'])}")
@@ -280,7 +290,7 @@ def _heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> 
     """
     columns = (*_HEATED, "max_temperature", *(["critical_mass"] if rigid else []))
     heads = [QUANTITIES[name].head.replace("side flow", "flow") for name in columns]
-    table = grid(f"At {rows[0]['speed'] * RPM:.0f} rpm", "c µm", "model", *heads)
+    table = grid(f"At {rows[0]['speed'] * RPM:.0f} rpm", _head("c", "µm"), "model", *heads)
     for row in rows:
         models = _models(row)
         for place, model in enumerate(models):

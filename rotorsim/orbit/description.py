@@ -12,7 +12,8 @@ from .analysis import WHIRLING, analyse
 from .orbit import Orbit
 from .spectrum import Ellipse
 
-_MICRO = 1e6
+_SMALL = QUANTITIES["radial_clearance"]
+"""How small lengths are shown."""
 
 
 def describe_orbit(orbit: Orbit) -> dict[str, Any]:
@@ -100,7 +101,7 @@ def run_title(name: str) -> str:
 ORBIT_HEADS = {
     "model": "model",
     "run": "run",
-    "clearance": "c µm",
+    "clearance": "c",
     "speed": "rpm",
     "turns": "turns",
     "eccentricity": "max ε",
@@ -118,7 +119,7 @@ def orbit_texts(said: Mapping[str, Any]) -> dict[str, str]:
     return {
         "model": said["thermal_model"],
         "run": said["kind"],
-        "clearance": number(said["radial_clearance"] * _MICRO),
+        "clearance": _SMALL.text(said["radial_clearance"], 4) + f" {_SMALL.unit}",
         "speed": f"{last:.0f}" if steady else f"{first:.0f} to {last:.0f}",
         "turns": number(said["revolutions"]),
         "eccentricity": number(said["max_eccentricity_ratio"], 3),
@@ -138,19 +139,19 @@ def _orbit_rows(said: Mapping[str, Any]) -> list[Row]:
         Row("largest eccentricity ratio", texts["eccentricity"]),
         Row("growth rate of small motions", texts["growth"], "1/s"),
         Row("whirl frequency ratio", number(said["whirl_frequency_ratio"])),
-        Row("amplitude", number(said["amplitude"] * _MICRO), "µm"),
+        Row("amplitude", _SMALL.text(said["amplitude"], 4), _SMALL.unit),
         Row("whirl ellipse", ellipse_text(said["whirl"] or said["synchronous"])),
-        Row("thinnest film", number(said["min_film"] * _MICRO), "µm"),
+        Row("thinnest film", _SMALL.text(said["min_film"], 4), _SMALL.unit),
         Row("outcome", texts["outcome"]),
     ]
     return [row for row in rows if row.value != "-"]
 
 
 def ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
-    """Half axes in µm and the sense; a dash without an ellipse."""
+    """Half axes in the unit shown and the sense; a dash without an ellipse."""
     if ellipse is None:
         return "-"
-    axes = (number(ellipse[key] * _MICRO, 3) for key in ("semi_major", "semi_minor"))
+    axes = (_SMALL.text(ellipse[key], 3) for key in ("semi_major", "semi_minor"))
     return f"{' x '.join(axes)} {ellipse['direction']}"
 
 
@@ -163,7 +164,7 @@ def whirl_range_text(found: Mapping[str, Any]) -> str:
     return (
         f"whirls by more than {100.0 * WHIRLING:.0f} % of the clearance from {first} to {last} rpm,"
         f" most at {most} rpm: "
-        f"{number(found['amplitude'] * _MICRO, 3)} µm at "
+        f"{_SMALL.text(found['amplitude'], 3)} {_SMALL.unit} at "
         f"{number(found['frequency'] / (2.0 * math.pi))} Hz"
     )
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import RotorsimError
 from ..model import BushModel, EccentricityTarget, LoadTarget, ShaftModel, ThermalModel
-from ..rows import RPM, ZERO_CELSIUS, Row, number
+from ..rows import RPM, ZERO_CELSIUS, Row, number, with_unit
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
@@ -33,15 +33,15 @@ def input_rows(scenario: Scenario) -> dict[str, _Rows]:
 
 
 def _millimetres(value: float) -> str:
-    return f"{number(value * 1e3)} mm"
+    return with_unit(value * 1e3, "mm")
 
 
 def _micrometres(value: float) -> str:
-    return f"{number(value * 1e6)} µm"
+    return with_unit(value * 1e6, "µm")
 
 
 def _celsius(value: float) -> str:
-    return f"{number(value - ZERO_CELSIUS)} °C"
+    return with_unit(value - ZERO_CELSIUS, "°C")
 
 
 def _degrees(value: float) -> str:
@@ -170,10 +170,10 @@ def _operation(scenario: Scenario) -> _Rows:
     if isinstance(target, EccentricityTarget):
         rows.append(Row("eccentricity ratio (given)", number(target.eccentricity_ratio)))
     else:
-        rows.append(Row("static load (given)", f"{number(target.load / 1e3)} kN"))
+        rows.append(Row("static load (given)", with_unit(target.load / 1e3, "kN")))
     if isinstance(target, LoadTarget) and target.load > 0.0:
         unit = target.load / (scenario.bearing.length * scenario.bearing.diameter)
-        rows.append(Row("specific load W/(L D)", f"{number(unit / 1e6, 3)} MPa"))
+        rows.append(Row("specific load W/(L D)", with_unit(unit / 1e6, "MPa", 3)))
     if scenario.load_direction:
         rows.append(Row("load direction", _degrees(scenario.load_direction)))
     rows += list(_rotor(scenario))
@@ -189,11 +189,11 @@ def _rotor(scenario: Scenario) -> Iterator[Row]:
         return
     flexible = rotor.kind == "jeffcott"
     yield Row("rotor", "flexible (Jeffcott)" if flexible else "rigid")
-    yield Row("rotor mass per bearing", f"{number(rotor.total_mass)} kg")
-    yield Row("unbalance per bearing", f"{number(float(abs(rotor.unbalance).sum()) * 1e6)} g mm")
+    yield Row("rotor mass per bearing", with_unit(rotor.total_mass, "kg"))
+    yield Row("unbalance per bearing", with_unit(float(abs(rotor.unbalance).sum()) * 1e6, "g mm"))
     if flexible:
         stiffness = rotor.parameters["shaft_stiffness"]
-        yield Row("shaft stiffness per bearing", f"{number(stiffness / 1e6)} MN/m")
+        yield Row("shaft stiffness per bearing", with_unit(stiffness / 1e6, "MN/m"))
 
 
 _ACCURACY_OR_CHOICE = {

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 from numpy.typing import NDArray
 
 from ...bearing.operating_point import FilmFields, OperatingPoint
 from ...bearing.table import CoefficientTable
 from ...errors import InputError
-from ...rows import QUANTITIES, RPM, ZERO_CELSIUS
+from ...rows import QUANTITIES, RPM, ZERO_CELSIUS, axis_title, in_shown_unit, number, shown_unit
 from ...study.stability import StabilityCurve
-from .style import MARKERS, MEGA, model_label, model_style, new_axes
+from ...text import caption
+from .style import MARKERS, MEGA, axes_or_new, figure_of, model_label, model_style, new_axes
 
 Array = NDArray[np.float64]
 
@@ -26,9 +31,10 @@ def coefficients_over_speed(table: CoefficientTable, title: str = "") -> Figure:
     clearances = table.dataset["radial_clearance"].values.astype(float)
     for row, (symbol, unit) in enumerate((("K", "MN/m"), ("C", "kN s/m"))):
         values = table.stiffness / 1e6 if symbol == "K" else table.damping / 1e3
+        values = in_shown_unit(values, unit)
         for column, (i, j) in enumerate(((0, 0), (0, 1), (1, 0), (1, 1))):
             ax = axes[row, column]
-            ax.set_title(rf"${symbol}_{{{'xy'[i]}{'xy'[j]}}}$ [{unit}]")
+            ax.set_title(axis_title(rf"${symbol}_{{{'xy'[i]}{'xy'[j]}}}$", unit))
             ax.axhline(0.0, color="0.6", linewidth=0.6)
             for index in np.ndindex(values.shape[:-3]):
                 names = dict(zip(table.choices, index, strict=True))
@@ -57,7 +63,7 @@ def thresholds_over_speed(
     if rotor_mass is not None:
         left.axhline(rotor_mass, color="k", linewidth=1.0)
         left.annotate(
-            f"rotor {rotor_mass:.4g} kg",
+            f"rotor {QUANTITIES['mass'].said(rotor_mass)}",
             (0.98, rotor_mass),
             xycoords=("axes fraction", "data"),
             ha="right",
@@ -92,6 +98,95 @@ def _legend_below(figure: Figure, ax: Axes) -> None:
         figure.legend(handles, labels, loc="outside lower center", ncols=min(3, len(handles)))
 
 
+def bearing_drawing(
+    point: OperatingPoint, journal_radius: float, title: str = "", ax: Axes | None = None
+) -> Figure:
+    """Cross-section at mid-plane, load down: journal where it is, oil in its temperature, pressure.
+
+    Diameters are to scale among each other; the film is magnified by the factor that the picture
+    names. Pressure is the shaded line outside the bore.
+
+    Raises
+    ------
+    InputError
+        The point was solved without its fields.
+    """
+    film, radius = _fields(point), journal_radius
+    ax = axes_or_new(ax, (5.2, 4.6))
+    middle = int(np.abs(film.y).argmin())
+    clearance = point.radial_clearance
+    magnified = 0.24 * radius / clearance
+    eccentricity = magnified * clearance * point.eccentricity_ratio
+    centre = eccentricity * np.array([np.cos(point.attitude_angle), np.sin(point.attitude_angle)])
+    heat = _mean_temperature(film)
+    gaps = _gaps(film.theta)
+    colours = matplotlib.colormaps["inferno"]
+    warm = None if heat is None else (float(heat.min()), float(heat.max()))
+    top = max(float(film.pressure[:, middle].max()), 1e-30)
+
+    def place(radial: Array, angle: Array) -> Array:
+        """Points of the picture, x (load) down and y to the right, from the journal's centre."""
+        x, y = centre[0] + radial * np.cos(angle), centre[1] + radial * np.sin(angle)
+        return np.column_stack([y, -x]) / radius
+
+    for first, last in zip([0, *gaps], [*gaps, film.theta.size], strict=True):
+        angle, h = film.theta[first:last], magnified * film.film_thickness[first:last, middle]
+        closed = not gaps and last - first > 2
+        if closed:
+            angle, h = np.append(angle, angle[0] + 2 * np.pi), np.append(h, h[0])
+        inner, outer = place(np.full(h.size, radius), angle), place(radius + h, angle)
+        cells = np.stack([inner[:-1], inner[1:], outer[1:], outer[:-1]], axis=1)
+        part = np.arange(first, first + len(cells)) % film.theta.size
+        if heat is None:
+            shades: Any = ["#9ec5de"] * len(cells)
+        else:
+            assert warm is not None
+            level = (heat[part, middle] - warm[0]) / max(warm[1] - warm[0], 1e-9)
+            shades = colours(0.15 + 0.8 * level)
+        ax.add_collection(PolyCollection(list(cells), facecolors=shades, edgecolors="face", lw=0.3))
+        ax.plot(*outer.T, color="k", lw=1.4)
+        height = np.take(film.pressure[:, middle], np.arange(first, first + h.size), mode="wrap")
+        # From the bearing's centre: a ring outside of every bore.
+        way = np.column_stack([np.sin(angle), -np.cos(angle)])
+        hill, foot = way * (1.32 + 0.4 * height / top)[:, None], 1.32 * way
+        ax.add_patch(Polygon(np.vstack([foot, hill[::-1]]), fc="#0072B2", alpha=0.35, lw=0))
+        ax.plot(*hill.T, color="#0072B2", lw=1.0)
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)
+    ax.add_patch(Polygon(place(np.full(181, radius), turn), fc="#e4e4e4", ec="k", lw=1.2))
+    _arrow(ax, place(np.array([0.0]), np.zeros(1))[0], (0.0, -0.55), "load")
+    sweep = place(np.full(40, 0.72 * radius), np.linspace(2.6, 4.2, 40))
+    ax.plot(*sweep.T, color="k", lw=1.0)
+    head = {"arrowstyle": "-|>", "color": "k", "mutation_scale": 12}
+    ax.annotate("", sweep[-1], sweep[-3], arrowprops=head)
+    ax.plot([0.0], [0.0], "+", color="#777777", ms=9)
+    ax.plot(*place(np.zeros(1), np.zeros(1)).T, "o", color="k", ms=3)
+    label = f"film magnified {number(magnified, 2)} times, p max "
+    most = QUANTITIES["max_pressure"]
+    label += f"{most.text(point.max_pressure)} {most.unit}"
+    if heat is not None and warm is not None:
+        low, high = (number(value, 3) for value in warm)
+        label += (
+            f"\noil (mean across the film) {low} to {high} {shown_unit('°C')[0]}: dark to light"
+        )
+    ax.set_aspect("equal")
+    ax.set(xlim=(-1.8, 1.8), ylim=(-1.85, 1.8), title=caption(title))
+    ax.text(0.5, -0.01, label, transform=ax.transAxes, ha="center", va="top", fontsize=8)
+    ax.set_axis_off()
+    return figure_of(ax)
+
+
+def _arrow(ax: Axes, start: Array, way: tuple[float, float], label: str) -> None:
+    end = (start[0] + way[0], start[1] + way[1])
+    ax.annotate("", end, tuple(start), arrowprops={"arrowstyle": "-|>", "lw": 1.5, "color": "k"})
+    ax.text(end[0] + 0.05, end[1], label, fontsize=8, va="center")
+
+
+def _gaps(theta: Array) -> list[int]:
+    """Cells with which a new film begins: behind a groove or between pads."""
+    steps = np.diff(theta)
+    return [int(k) + 1 for k in np.flatnonzero(steps > 2.5 * np.median(steps))]
+
+
 def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
     """Contours over angle and axial position: one row per film, pressure and temperature.
 
@@ -104,10 +199,10 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
     known = [values for values in heat if values is not None]
     size = (9.0 if known else 5.0, 0.7 + 2.3 * len(films))
     figure, axes = new_axes(len(films), 2 if known else 1, size, title, sharex=True, sharey=True)
-    top = max(float(film.pressure.max()) for film in films) * MEGA
+    top = max(float(_pressure(film).max()) for film in films)
     for row, point, film, warm in zip(axes, points, films, heat, strict=True):
-        label = f"{model_label(point.thermal_model)}: pressure [MPa]"
-        _contours(figure, row[0], film, film.pressure * MEGA, (0.0, top), "viridis", label)
+        label = axis_title(f"{model_label(point.thermal_model)}: pressure", "MPa")
+        _contours(figure, row[0], film, _pressure(film), (0.0, top), "viridis", label)
         if not known:
             continue
         if warm is None:
@@ -115,12 +210,12 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
             row[1].text(0.5, 0.5, "uniform temperature", ha="center", transform=row[1].transAxes)
             continue
         span = (min(float(t.min()) for t in known), max(float(t.max()) for t in known))
-        label = f"{model_label(point.thermal_model)}: mean across the film [°C]"
+        label = axis_title(f"{model_label(point.thermal_model)}: mean across the film", "°C")
         _contours(figure, row[1], film, warm, span, "inferno", label)
     for ax in axes[-1]:
         ax.set_xlabel("angle from the load line [deg]")
     for ax in axes[:, 0]:
-        ax.set_ylabel("axial position [mm]")
+        ax.set_ylabel(axis_title("axial position", "mm"))
     return figure
 
 
@@ -135,12 +230,12 @@ def film_profiles(points: Sequence[OperatingPoint], title: str = "") -> Figure:
         angle, order = _angles(film.theta)
         name = point.thermal_model
         look = {**model_style(name), "label": model_label(name)}
-        axes[0, 0].plot(angle, film.pressure[order, middle] * MEGA, **look)
+        axes[0, 0].plot(angle, _pressure(film)[order, middle], **look)
         if temperature is not None:
             axes[0, 1].plot(angle, temperature[order, middle], **look)
-    axes[0, 0].set_ylabel("mid-plane pressure [MPa]")
+    axes[0, 0].set_ylabel(axis_title("mid-plane pressure", "MPa"))
     if warm:
-        axes[0, 1].set_ylabel("mid-plane, mean across the film [°C]")
+        axes[0, 1].set_ylabel(axis_title("mid-plane, mean across the film", "°C"))
     for ax in axes[0]:
         ax.set_xlabel("angle from the load line [deg]")
         ax.xaxis.set_major_locator(MultipleLocator(90))
@@ -161,12 +256,11 @@ def _contours(
     angle, order = _angles(film.theta)
     low, high = span[0], span[1] if span[1] > span[0] else span[0] + 1.0
     shown = np.clip(values[order].T, low, high)
-    filled = ax.contourf(angle, film.y * 1e3, shown, np.linspace(low, high, 25), cmap=colours)
+    along = in_shown_unit(film.y * 1e3, "mm")
+    filled = ax.contourf(angle, along, shown, np.linspace(low, high, 25), cmap=colours)
     # Lines carry the shape where the print has no colour.
     if np.ptp(shown) > 0.0:
-        ax.contour(
-            angle, film.y * 1e3, shown, np.linspace(low, high, 7)[1:-1], colors="w", linewidths=0.6
-        )
+        ax.contour(angle, along, shown, np.linspace(low, high, 7)[1:-1], colors="w", linewidths=0.6)
     ax.grid(visible=False)
     ax.xaxis.set_major_locator(MultipleLocator(90))
     ax.set_title(label)
@@ -181,10 +275,14 @@ def _angles(theta: Array) -> tuple[Array, NDArray[np.intp]]:
     return turned[order], order
 
 
+def _pressure(film: FilmFields) -> Array:
+    return np.asarray(in_shown_unit(film.pressure * MEGA, "MPa"))
+
+
 def _mean_temperature(film: FilmFields) -> Array | None:
-    """Mean across the film, (n, m) [degC]; None where the film has one temperature."""
+    """Mean across the film, (n, m), in the unit shown; None where the film has one temperature."""
     mean = film.temperature.mean(axis=2) - ZERO_CELSIUS
-    return mean if np.ptp(mean) > 1e-6 else None
+    return np.asarray(in_shown_unit(mean, "°C")) if np.ptp(mean) > 1e-6 else None
 
 
 def _fields(point: OperatingPoint) -> FilmFields:

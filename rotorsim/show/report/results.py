@@ -70,7 +70,7 @@ def all_points(points: Sequence[OperatingPoint]) -> str:
 def coefficients(table: CoefficientTable) -> str:
     """K and C over speed, a table for each curve."""
     return "\n".join(
-        _wide(table_html(COEFFICIENT_HEAD, rows, f"{title}: K in MN/m, C in kN s/m", texts=0))
+        _wide(table_html(COEFFICIENT_HEAD, rows, title, texts=0))
         for title, rows in coefficient_tables(table)
     )
 
