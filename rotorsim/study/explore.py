@@ -11,10 +11,10 @@ import numpy as np
 
 from ..errors import InputError
 from ..files.scenario import Scenario
-from ..files.scenario.changes import to_toml
+from ..files.scenario.scenario import to_toml
 from ..rows import RPM, ZERO_CELSIUS, shown_unit
 from ..units import parse_quantity
-from .axes import COARSE, with_mesh
+from .planes import COARSE, with_mesh
 from .points import solve
 from .stability import StabilityCurve, stability_curves
 from .sweep import as_table, sweep_points

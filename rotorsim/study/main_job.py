@@ -113,7 +113,7 @@ def compute(
     attempt = Attempts(announce)
     curves = attempt("critical mass", lambda: stability_curves(table, scenario.rotor), [])
     modes = attempt("eigenvalues", lambda: _modes_of(scenario, table), [])
-    chart = attempt("stability map", lambda: _map_of(scenario, table), None)
+    chart = attempt("stability map", lambda: map_of(scenario, table), None)
     films: list[OperatingPoint] = []
     motion: list[FilmFrame] = []
     if scenario.orbit is not None:
@@ -173,7 +173,7 @@ def _one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companio
     return orbit_steps.simulate_orbit(scenario, table, thermal_model=model, schedule=schedule)
 
 
-def _map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
+def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
     """Stability map over speed and the scenario's masses.
 
     Without masses in the scenario: up to three times that of its rotor; see `_usual_mass`.

@@ -337,7 +337,7 @@ def _changed_text(text: str, root: Any, changes: Mapping[str, object]) -> str:
         for other in _INSTEAD.get(path, ()):
             if other not in (_path(root, given)[-1] for given in changes):
                 inner.pop(other, None)
-    return _to_toml(tables)
+    return to_toml(tables)
 
 
 def _path(root: Any, name: str) -> tuple[str, ...]:
@@ -380,7 +380,7 @@ def _kind(entry: Entry) -> str | None:
     return marks[0].kind if marks else None
 
 
-def _to_toml(tables: Mapping[str, Any]) -> str:
+def to_toml(tables: Mapping[str, Any]) -> str:
     """Return TOML text: one line for each entry."""
     lines = [
         f"{key} = {_toml(value)}" for key, value in tables.items() if not isinstance(value, dict)
