@@ -66,6 +66,7 @@ _KINDS = (
     _Kind("density", "kg/m^3", "860 kg/m^3", 1e-3, 1e5),
     _Kind("specific heat", "J/(kg*K)", "2000 J/(kg*delta_degC)", 1e-1, 1e6),
     _Kind("thermal conductivity", "W/(m*K)", "0.13 W/(m*delta_degC)", 1e-5, 1e5),
+    _Kind("volume flow", "m^3/s", "20 L/min", 1e-12, 1e2),
     _Kind("heat transfer coefficient", "W/(m^2*K)", "80 W/(m^2*delta_degC)", 1e-6, 1e8),
 )
 QUANTITIES = {kind.name: kind for kind in _KINDS}

@@ -239,8 +239,12 @@ def film_dynamics(
     mass = None
     if solution.problem.bearing.pads:
         turn = np.eye(len(keep))
-        mass, pivots = _pad_matrices(solution)
-        mass, held = mass[np.ix_(keep, keep)], held + pivots[np.ix_(keep, keep)]
+        bearing, q = solution.problem.bearing, solution.state.displacement
+        pivots, mass = (
+            np.pad(part, (0, 2))[np.ix_(keep, keep)]  # the journal's rotations come last
+            for part in (_pivot_stiffness(bearing, q), pad_mass(bearing))
+        )
+        held = held + pivots
     return FilmDynamics(
         turn=turn,
         speed=speed,
@@ -285,23 +289,30 @@ def _moving(
     return (*journal, *(names[place] for place in keep)), places + keep
 
 
-def _pad_matrices(solution: FilmSolution) -> tuple[Array, Array]:
-    """Mass of the pads and stiffness of their pivots at the deflections, (q + 2, q + 2) each."""
-    bearing, size = solution.problem.bearing, solution.state.displacement.size + 2
-    mass, stiffness = np.zeros((2, size, size))
+def _pivot_stiffness(bearing: Bearing, displacement: Array) -> Array:
+    """Stiffness of the pads' pivots at their deflections, (q, q)."""
+    stiffness = np.zeros(displacement.size)
     for pad, unknowns in zip(bearing.pads, pad_unknowns(bearing)[1], strict=True):
+        if (place := unknowns.pivot) is not None:
+            stiffness[place] = pad.pivot.stiffness_at(float(displacement[place]))
+    return np.diag(stiffness)
+
+
+def pad_mass(bearing: Bearing) -> Array:
+    """Mass matrix of the pads over journal and pads, (q, q) [kg, kg m, kg m2]."""
+    names, places = pad_unknowns(bearing)
+    mass = np.zeros((len(names), len(names)))
+    for pad, unknowns in zip(bearing.pads, places, strict=True):
         inertia = pad_inertia(pad, bearing.journal_radius, bearing.length)
         tilt, pivot = unknowns.tilt, unknowns.pivot
         mass[tilt, tilt] = inertia.tilt
         if pivot is not None:
-            deflection = float(solution.state.displacement[pivot])
-            stiffness[pivot, pivot] = pad.pivot.stiffness_at(deflection)
             mass[pivot, pivot] = inertia.mass
             # The centre of mass ahead of the pivot moves inwards as the pad tilts.
             mass[pivot, tilt] = mass[tilt, pivot] = -inertia.coupling
         if unknowns.pitch is not None:
             mass[unknowns.pitch, unknowns.pitch] = inertia.pitch
-    return mass, stiffness
+    return mass
 
 
 def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
@@ -323,6 +334,26 @@ def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
     above, below = np.asarray(eigvals(left, right, homogeneous_eigvals=True))
     finite = np.abs(below) > 1e-10 * np.abs(above)
     return np.asarray(omega * above[finite] / below[finite], dtype=complex)
+
+
+def rigid_growth_rates(dynamics: FilmDynamics, masses: Array) -> Array:
+    """Largest real part [1/s] of the eigenvalues of rigid rotors [kg] on a film and its pads."""
+    assert dynamics.mass is not None
+    pads = dynamics.mass[2:, 2:]
+    if pads.size and np.linalg.eigvalsh(pads)[0] <= 0.0:
+        return np.array([_pad_eigenvalues(dynamics, float(m)).real.max() for m in masses])
+    size, count = len(dynamics.names), len(masses)
+    inertia = np.repeat(dynamics.mass[None], count, axis=0)
+    inertia[:, [0, 1], [0, 1]] += masses[:, None]
+    # Velocities in the unit of the shaft's speed; displacements scaled as the stiffnesses ask.
+    scale = 1.0 / np.sqrt(np.abs(np.diag(dynamics.stiffness)))
+    k, c = (part * np.outer(scale, scale) for part in (dynamics.stiffness, dynamics.damping))
+    inverse = np.linalg.inv(inertia * np.outer(scale, scale)) / dynamics.speed
+    states = np.zeros((count, 2 * size, 2 * size))
+    states[:, :size, size:] = dynamics.speed * np.eye(size)
+    states[:, size:, :size] = -inverse @ k
+    states[:, size:, size:] = -inverse @ c * dynamics.speed
+    return np.asarray(np.linalg.eigvals(states).real.max(axis=-1))
 
 
 def frequency_coefficients(

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputError, OutOfRangeError, TableError
 from ..status import SolveStatus
-from .table_data import COEFFICIENTS, build
+from .table_data import COEFFICIENTS, PAD_MATRICES, UNKNOWNS, build, common_unknowns
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -184,6 +184,8 @@ _SLACK = 1e-9
 def refine(dataset: xr.Dataset, dimension: str, values: Array) -> xr.Dataset:
     """Interpolate K, C and the load along `dimension`; other variables are left out.
 
+    With tilting pads also K, C and M over journal and pads.
+
     A monotone cubic (PCHIP) over the logarithm of the coordinate. A value between two points of
     which one did not converge has not converged either.
     """
@@ -205,10 +207,16 @@ def refine(dataset: xr.Dataset, dimension: str, values: Array) -> xr.Dataset:
     dims = dataset["kxx"].dims
     axis = dims.index(dimension)
     names = [name for name in (*COEFFICIENTS, "load") if name in dataset]
-    columns = np.stack([np.moveaxis(dataset[name].values, axis, 0) for name in names], axis=-1)
+    columns = np.stack([dataset[name].values for name in names], axis=-1)
+    unknowns: list[str] = []
+    if "full_stiffness" in dataset:
+        unknowns, full = common_unknowns(dataset)
+        full = np.moveaxis(full, 0, -3)
+        columns = np.concatenate([columns, full.reshape(*columns.shape[:-1], -1)], axis=-1)
+    columns = np.moveaxis(columns, axis, 0)
     good = np.moveaxis(dataset["status"].values == str(SolveStatus.CONVERGED), axis, 0)
     shape = columns.shape
-    flat, flat_good = columns.reshape(known.size, -1, len(names)), good.reshape(known.size, -1)
+    flat, flat_good = columns.reshape(known.size, -1, shape[-1]), good.reshape(known.size, -1)
     result = np.full((wanted.size, *flat.shape[1:]), np.nan)
     fine = np.zeros((wanted.size, flat.shape[1]), dtype=bool)
     x, at = np.log(known), np.log(wanted)
@@ -225,7 +233,14 @@ def refine(dataset: xr.Dataset, dimension: str, values: Array) -> xr.Dataset:
     variables = {name: moved[..., i] for i, name in enumerate(names)}
     status = np.where(fine, str(SolveStatus.CONVERGED), str(SolveStatus.NOT_CONVERGED))
     status = np.moveaxis(status.reshape(wanted.size, *shape[1:-1]), 0, axis).astype(object)
-    return _dataset(dataset, dimension, values, {**variables, "status": status})
+    refined = _dataset(dataset, dimension, values, {**variables, "status": status})
+    if not unknowns:
+        return refined
+    size = len(unknowns)
+    full = moved[..., len(names) :].reshape(*moved.shape[:-1], 3, size, size)
+    return refined.assign(
+        {name: ((*dims, *UNKNOWNS), full[..., i, :, :]) for i, name in enumerate(PAD_MATRICES)}
+    ).assign_coords(dict.fromkeys(UNKNOWNS, unknowns))
 
 
 def _between_good(

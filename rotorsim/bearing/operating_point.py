@@ -112,6 +112,40 @@ def condensed(law: NDArray[np.complex128], kept: int) -> NDArray[np.complex128]:
     return np.asarray(law[..., :kept, :kept] - law[..., :kept, kept:] @ own)
 
 
+def kept_throughout(speeds: Array, matrices: Array) -> tuple[NDArray[np.intp], Array]:
+    """Keep the unknowns that all points have; eliminate the others at the shaft's frequency.
+
+    Parameters
+    ----------
+    speeds : (n,) array
+        [rad/s]
+    matrices : (3, n, q, q) array
+        K, C and M of each point, NaN in the rows and columns of what it has not.
+
+    Returns
+    -------
+    (k,) array of int
+        Unknowns kept.
+    (3, n, k, k) array
+    """
+    moving: NDArray[np.bool_] = np.isfinite(np.diagonal(matrices[0], axis1=1, axis2=2))
+    stays = np.asarray(moving.all(axis=0), dtype=bool)
+    own = np.flatnonzero(stays)
+    kept = matrices[:, :, own[:, None], own].copy()
+    for place, speed in enumerate(speeds):
+        gone = np.flatnonzero(np.asarray(moving[place] & ~stays, dtype=bool))
+        if not gone.size:
+            continue
+        order = np.concatenate([own, gone])
+        k, c, m = matrices[:, place, order[:, None], order]
+        s = 1j * float(speed)
+        law = k + s * c + s * s * m
+        change = condensed(law, own.size) - law[: own.size, : own.size]
+        kept[0, place] += change.real
+        kept[1, place] += change.imag / float(speed)
+    return own, kept
+
+
 @dataclass(frozen=True)
 class PadResult:
     """One tilting pad at its equilibrium.
@@ -122,6 +156,8 @@ class PadResult:
     load : Force on the pivot [N].
     max_pressure : Gauge [Pa].
     max_temperature : Of the pad's surface [K]; isothermal: the supply's.
+    inlet_temperature : Of the oil that enters its film [K].
+    inlet_fraction : Part of its leading edge that is full of oil: below 1 the pad is starved.
     unloaded : Its film cannot be balanced at positive pressure: the pad floats or flutters. It is
         kept out of the equilibrium and the coefficients; its tilt is arbitrary.
     """
@@ -132,6 +168,8 @@ class PadResult:
     load: float
     max_pressure: float
     max_temperature: float
+    inlet_temperature: float
+    inlet_fraction: float
     unloaded: bool
 
 

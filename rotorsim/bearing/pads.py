@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from ..film.geometry import CENTER
+from ..film.heat import entering_temperature
 from ..film.pads import pad_frames
 from ..film.solution import FilmSolution
+from ..model import Bearing, Cavitation, Feed
 from .operating_point import PadResult
 
 
@@ -15,13 +17,14 @@ def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
     problem, state, q = solution.problem, solution.state, solution.state.displacement
     if not problem.bearing.pads:
         return ()
-    results = []
+    results, inlet = [], state.solution.inlet
     load = state.solution.pressure * state.operator.area * problem.mesh.multiplicity
     for number, frame in enumerate(pad_frames(problem.bearing, problem.mesh)):
         unknowns, columns = frame.unknowns, frame.columns
-        hottest = problem.thermal.supply_temperature
-        if solution.thermal is not None:
-            hottest = float(solution.thermal.heat.bush[columns].max())
+        hottest = entering = problem.thermal.supply_temperature
+        if (thermal := solution.thermal) is not None:
+            hottest = float(thermal.heat.bush[columns].max())
+            entering = entering_temperature(thermal.energy, thermal.inlet_temperature, columns)
         cosine = (1.0 - frame.sine[CENTER] ** 2) ** 0.5
         unloaded = number in solution.unloaded
         results.append(
@@ -32,6 +35,8 @@ def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
                 load=0.0 if unloaded else float((load[columns] * cosine).sum()),
                 max_pressure=float(state.solution.pressure[columns].max()),
                 max_temperature=hottest,
+                inlet_temperature=entering,
+                inlet_fraction=1.0 if inlet is None else float(inlet[number]),
                 unloaded=unloaded,
             )
         )
@@ -42,10 +47,53 @@ def unloaded_warnings(unloaded: Collection[int]) -> tuple[str, ...]:
     """Return a sentence that names the pads without load."""
     if not unloaded:
         return ()
-    names = ", ".join(str(number + 1) for number in sorted(unloaded))
-    pads = f"pad {names} is" if len(unloaded) == 1 else f"pads {names} are"
     return (
-        f"{pads} unloaded: the film there cannot be balanced at positive pressure, and the pad "
-        "floats or flutters; it is kept out of the equilibrium and the coefficients (preload or an "
-        "offset pivot would load it)",
+        f"{_named(unloaded)} unloaded: the film there cannot be balanced at positive pressure, and "
+        "the pad floats or flutters; it is kept out of the equilibrium and the coefficients "
+        "(preload or an offset pivot would load it)",
     )
+
+
+def supply_warnings(
+    bearing: Bearing, cavitation: Cavitation, pads: Sequence[PadResult], demand: Sequence[float]
+) -> tuple[str, ...]:
+    """Return sentences on pads that get less oil than their films take.
+
+    Parameters
+    ----------
+    bearing : Bearing
+    cavitation : Cavitation
+    pads : sequence of PadResult
+    demand : sequence of float
+        Of each pad's opening [m3/s].
+    """
+    starved = [number for number, pad in enumerate(pads) if pad.inlet_fraction < 1.0]
+    if starved:
+        least = min(pads[number].inlet_fraction for number in starved)
+        return (
+            f"{_named(starved)} starved: the oil that is supplied and carried over fills down to "
+            f"{100.0 * least:.0f} % of a leading edge, and the film begins behind it",
+        )
+    lacking = lacking_pads(bearing, cavitation, demand)
+    if not lacking:
+        return ()
+    return (
+        f"{_named(lacking)} given less oil than the film takes; only a mass-conserving film "
+        '(film.cavitation = "jfo") can starve: this one makes what is missing',
+    )
+
+
+def lacking_pads(
+    bearing: Bearing, cavitation: Cavitation, demand: Sequence[float]
+) -> tuple[int, ...]:
+    """Pads that get less oil than their films' `demand` [m3/s], in a film that makes the rest."""
+    flow = bearing.supply_flow
+    if flow is None or bearing.feed is Feed.FLOODED or cavitation is Cavitation.JFO:
+        return ()
+    share = flow / len(bearing.pads)
+    return tuple(k for k, needed in enumerate(demand) if needed > share * (1.0 + 1e-6))
+
+
+def _named(numbers: Collection[int]) -> str:
+    names = ", ".join(str(number + 1) for number in sorted(numbers))
+    return f"pad {names} is" if len(numbers) == 1 else f"pads {names} are"

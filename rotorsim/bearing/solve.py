@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import suppress
 
 import numpy as np
@@ -30,7 +31,7 @@ from .dynamics import (
     with_rotations,
 )
 from .operating_point import FilmFields, OperatingPoint, failed_point
-from .pads import pad_results, unloaded_warnings
+from .pads import lacking_pads, pad_results, supply_warnings, unloaded_warnings
 from .whirl import rigid_threshold
 
 Array = NDArray[np.float64]
@@ -122,7 +123,8 @@ def operating_point(
     fraction = flow.liquid_fraction
     friction = friction_force(state, fraction)
     hottest, mean = _temperatures(solution, fraction)
-    thinnest = _min_film_thickness(solution)
+    thinnest, pads = _min_film_thickness(solution), pad_results(solution)
+    demand = tuple(float(needed) for needed in supply_flow(state, flow))
     numbers: dict[str, float] = {
         "eccentricity_ratio": float(np.hypot(*center)) / clearance,
         "attitude_angle": math.atan2(center[1], center[0]),
@@ -168,7 +170,7 @@ def operating_point(
         coefficient_frequency_ratio=frequency_ratio,
         frequency_coefficients=frequency_coefficients(dynamics, case.film.frequency_ratios),
         moment=turn @ journal_moment(state),
-        supply_flow=tuple(float(demand) for demand in supply_flow(state, flow)),
+        supply_flow=demand,
         coefficients_full=(
             full_coefficients(
                 with_rotations(solution, turn) if case.film.rotations else dynamics, frequency_ratio
@@ -181,7 +183,7 @@ def operating_point(
         critical_mass_synchronous=synchronous.critical_mass
         if synchronous and dynamics.has_pads
         else None,
-        pads=pad_results(solution),
+        pads=pads,
         whirl_frequency_ratio=threshold.whirl_frequency_ratio if threshold else None,
         stability=threshold.stability if threshold else None,
         iterations=solution.iterations,
@@ -193,11 +195,12 @@ def operating_point(
             ),
             *stored_oil_warnings(dynamics, stiffness, damping, frequency_ratio),
             *unloaded_warnings(solution.unloaded),
+            *supply_warnings(case.bearing, case.film.cavitation, pads, demand),
         ),
         heat_balance=heat,
         heat_imbalance=None if heat is None else heat.imbalance,
         shaft_temperature=_shaft_temperature(solution),
-        outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat),
+        outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat, demand),
         fields=_fields(solution, fraction) if keep_fields else None,
     )  # fmt: skip
 
@@ -255,14 +258,21 @@ def _shaft_temperature(solution: FilmSolution) -> float:
     return solution.thermal.heat.shaft
 
 
-def _outlet_temperature(case: Case, flow: float, heat: HeatBalance | None) -> float | None:
+def _outlet_temperature(
+    case: Case, flow: float, heat: HeatBalance | None, demand: Sequence[float]
+) -> float | None:
     """Mean temperature of the oil that leaves at both ends [K]; None where it is not known.
 
+    With a given supply, of all oil that leaves the housing.
     All heat that the oil carries off leaves with the side flow only where the oil that comes round
     mixes, whole, with what is supplied, and at one temperature.
     """
     thermal, oil = case.thermal, case.lubricant
     mixed = thermal.inlet is InletModel.MIXING and thermal.hot_oil_carry_over == 1.0
+    if case.bearing.supply_flow is not None:
+        flow = case.bearing.supply_flow
+        lacking = lacking_pads(case.bearing, case.film.cavitation, demand)
+        mixed = thermal.inlet is InletModel.MIXING and not lacking
     kept = case.film.cavitation in (Cavitation.REYNOLDS, Cavitation.JFO)
     single = all(
         groove.supply_temperature in (None, thermal.supply_temperature)

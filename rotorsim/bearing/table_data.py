@@ -13,6 +13,7 @@ import numpy as np
 
 from ..errors import TableError
 from ..status import SolveStatus
+from .operating_point import kept_throughout
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -159,7 +160,7 @@ FULL_COEFFICIENTS = tuple(f"{kind}_{i}_{j}" for kind in "kc" for i in _NAMES for
 
 _TEXTS = ("status", "stability", "cavitation")
 
-_UNKNOWNS = ("unknown", "other_unknown")
+UNKNOWNS = ("unknown", "other_unknown")
 """Dimensions of the matrices over journal and pads: force of the first, motion of the second."""
 PAD_MATRICES = ("full_stiffness", "full_damping", "full_mass")
 
@@ -225,7 +226,7 @@ def _with_pads(
         at = np.array([names.index(name) for name in full.names])
         for kind, matrix in enumerate((full.stiffness, full.damping, full.mass)):
             values[kind, number, at[:, None], at] = matrix
-    dimensions = (*DIMENSIONS, *_UNKNOWNS)
+    dimensions = (*DIMENSIONS, *UNKNOWNS)
     size = len(names)
     variables: dict[str, Any] = {
         name: (dimensions, values[kind].reshape(*shape, size, size), cf_attributes(name))
@@ -237,8 +238,24 @@ def _with_pads(
     variables[name] = (DIMENSIONS, column.reshape(shape), cf_attributes(name))
     text = _text(names)
     return dataset.assign(variables).assign_coords(
-        {name: (name, text, cf_attributes(name)) for name in _UNKNOWNS}
+        {name: (name, text, cf_attributes(name)) for name in UNKNOWNS}
     )
+
+
+def common_unknowns(dataset: xr.Dataset) -> tuple[list[str], np.ndarray]:
+    """Names and K, C, M (3, ..., k, k) over journal and pads, of pads that all points load.
+
+    Others are eliminated at the shaft's frequency; NaN where a point did not converge.
+    """
+    dims = dataset["kxx"].dims
+    given = np.stack([dataset[name].transpose(*dims, *UNKNOWNS).values for name in PAD_MATRICES])
+    good = dataset["status"].values == str(SolveStatus.CONVERGED)
+    speeds = dataset["speed"].broadcast_like(dataset["kxx"]).transpose(*dims).values
+    names = [str(name) for name in dataset["unknown"].values]
+    own, kept = kept_throughout(speeds[good], given[:, good])
+    values = np.full((3, *good.shape, own.size, own.size), np.nan)
+    values[:, good] = kept
+    return [names[place] for place in own], values
 
 
 def _pad_number(name: str) -> int:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Bearing
+from ..model import Bearing, Pad
 
 if TYPE_CHECKING:
     from .mesh import FilmMesh
@@ -192,15 +192,31 @@ def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, 
     return tuple(names), tuple(places)
 
 
+def pad_face(
+    bearing: Bearing, pad: Pad, theta: Array, tilt: float = 0.0, pivot: float = 0.0
+) -> Array:
+    """Distance [m] of a pad's face from a centred journal's surface, at mid-plane.
+
+    Parameters
+    ----------
+    theta : array
+        [rad]
+    tilt, pivot : float
+        In the direction of rotation [rad]; outwards [m].
+    """
+    angle, clearance = theta - pad.pivot_angle, bearing.clearance_of(pad)
+    face = clearance * (1.0 - bearing.preload_of(pad) * np.cos(angle))
+    arm = bearing.journal_radius + pad.thickness
+    return np.asarray(face - arm * tilt * np.sin(angle) + pivot * np.cos(angle))
+
+
 def _pads_at_rest(bearing: Bearing, mesh: FilmMesh) -> Array:
     """H [m] of untilted pads around a centred journal, (3, n): centres, west and east faces."""
     theta = _angles(mesh)
     h = np.full(theta.shape, bearing.radial_clearance)
     for number, pad in enumerate(bearing.pads):
         columns = mesh.region == number
-        clearance = bearing.clearance_of(pad)
-        angle = theta[:, columns] - pad.pivot_angle
-        h[:, columns] = clearance * (1.0 - bearing.preload_of(pad) * np.cos(angle))
+        h[:, columns] = pad_face(bearing, pad, theta[:, columns])
     return h
 
 

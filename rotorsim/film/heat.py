@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import InletModel
+from ..model import Feed, InletModel
 from .energy import EnergyProblem, dissipation
 from .flow import FilmFlow, film_flow
 from .operator import EAST, NORTH, SOUTH, WEST
@@ -151,9 +152,10 @@ def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
 def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature: Array) -> Array:
     """Return the temperature of the oil entering where no film lies behind a face [K].
 
-    (4, n, m). ``fresh``: the supply's. ``mixing``: in every groove or slot the oil that arrives
-    mixes with as much supplied oil as is missing. ``periodic``: as ``fresh`` where no film lies
-    before; a slot passes the film's own oil on (see `_carry_over`).
+    (4, n, m), or (4, n, m, k) where it differs across the film. ``fresh``: the supply's.
+    ``mixing``: in every groove or slot the oil that arrives mixes with the supply (see `_mixed`).
+    ``periodic``: as ``fresh`` where no film lies before; a slot passes the film's own oil on (see
+    `_carry_over`).
     """
     thermal, mesh = problem.thermal, problem.mesh
     result = np.full((4, *mesh.shape), thermal.supply_temperature)
@@ -171,7 +173,11 @@ def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature:
 def _mixed(
     problem: FilmProblem, energy: EnergyProblem, temperature: Array, supplied: Array
 ) -> Array:
-    """Mix what arrives in each groove or slot with as much fresh oil as is missing there."""
+    """Mix what arrives in each groove or slot with the oil supplied there.
+
+    Without a given supply, that is as much fresh oil as is missing. (4, n, m), or (4, n, m, k)
+    where it enters in layers.
+    """
     groove_source = _groove_source(problem, energy)
     count = len(problem.bearing.grooves) + 1
     taken, given, heat, supply = np.zeros((4, count))
@@ -188,15 +194,109 @@ def _mixed(
         heat += np.bincount(number, brought, count)
         taken += np.bincount(number, leaving, count)
         supply += np.bincount(number, leaving * supplied[face][open_], count)
-    kept = problem.thermal.hot_oil_carry_over
-    given, heat = kept * given, kept * heat
-    fresh = np.maximum(taken - given, 0.0)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        value = (heat + fresh * supply / taken) / (given + fresh)
+        cold = np.where(taken > 0.0, supply / taken, float(supplied.max()))
+        pool = _Pool(taken, given, heat / given, cold, problem.thermal.hot_oil_carry_over)
+    bearing = problem.bearing
+    if bearing.supply_flow is None:
+        fresh = np.maximum(pool.taken - pool.hot, 0.0)
+        value = pool.mixed(pool.hot, fresh)
+    else:
+        fresh = np.full(count, bearing.supply_flow / max(count - 1, 1))
+        fresh /= problem.mesh.multiplicity
+        if bearing.feed is Feed.FLOODED:
+            value = pool.in_bath(fresh, *_side_flow(energy, temperature))
+        else:
+            value = pool.mixed(pool.hot, fresh)
     mixed = supplied.copy()
     here = (groove_source >= 0) & (taken > 0.0)[np.maximum(groove_source, 0)]
     mixed[here] = value[groove_source[here]]
+    if bearing.feed is Feed.LEADING_EDGE_GROOVE:
+        fresh = np.minimum(fresh, taken)
+        hot = np.minimum(pool.hot, taken - fresh)
+        return _in_layers(energy, mixed, groove_source, pool, hot, fresh)
     return mixed
+
+
+@dataclass(frozen=True)
+class _Pool:
+    """What meets in each groove: flows [m3/s] and temperatures [K], (g,) arrays."""
+
+    taken: Array
+    given: Array
+    hot_temperature: Array
+    supply_temperature: Array
+    carry_over: float
+
+    @property
+    def hot(self) -> Array:
+        """Of the oil that arrives, what can enter the next film."""
+        return self.carry_over * self.given
+
+    def mixed(self, hot: Array, fresh: Array, bath: Array | float = 0.0, at: float = 0.0) -> Array:
+        """Temperature of hot, fresh and housing oil together."""
+        heat = _heat(hot, self.hot_temperature) + _heat(fresh, self.supply_temperature)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return (heat + bath * at) / (hot + fresh + bath)
+
+    def in_bath(self, fresh: Array, side: float, side_heat: float) -> Array:
+        """The same in a full housing, whose oil makes up what is missing.
+
+        Into the housing go the films' side flow, what overflows, and what is not carried over.
+        """
+        excess = np.maximum(self.hot + fresh - self.taken, 0.0)
+        missing = np.maximum(self.taken - self.hot - fresh, 0.0)
+        lost = self.given - self.hot
+        flow = side + float(np.sum(excess + lost))
+        over = _heat(excess, self.mixed(self.hot, fresh)) + _heat(lost, self.hot_temperature)
+        bath = (side_heat + float(np.sum(over))) / flow if flow > 0.0 else 0.0
+        return self.mixed(self.hot, fresh, missing, bath)
+
+
+def _heat(flow: Array, temperature: Array) -> Array:
+    """Flow times temperature, of what flows at all."""
+    return np.where(flow > 0.0, flow * np.where(flow > 0.0, temperature, 0.0), 0.0)
+
+
+def _side_flow(energy: EnergyProblem, temperature: Array) -> tuple[float, float]:
+    """Oil that leaves the films at their ends [m3/s], and that times its temperature."""
+    total = heat = 0.0
+    for face, outward in ((SOUTH, -1.0), (NORTH, 1.0)):
+        open_ = ~energy.interior[face] & ~energy.fixed
+        flux = np.maximum(outward * layer_fluxes(energy, face, open_), 0.0)
+        total, heat = total + float(flux.sum()), heat + float(np.sum(flux * temperature[open_]))
+    return total, heat
+
+
+def _in_layers(
+    energy: EnergyProblem, mixed: Array, groove_source: NDArray[np.int64], pool: _Pool,
+    hot: Array, fresh: Array,
+) -> Array:  # fmt: skip
+    """Let the hot oil enter next to the journal and the fresh oil next to the pad, (4, n, m, k)."""
+    layers = energy.layers.pressure_share.shape[2]
+    result = np.repeat(mixed[..., None], layers, axis=3)
+    number = groove_source[WEST]
+    open_ = (number >= 0) & ((hot + fresh) > 0.0)[np.maximum(number, 0)]
+    at = number[open_]
+    flux = np.maximum(layer_fluxes(energy, WEST, open_), 0.0)
+    # Flow nearer to the journal than each layer's two faces.
+    above = np.cumsum(flux[:, ::-1], axis=1)[:, ::-1]
+    nearest = (hot[at] / (hot + fresh)[at] * flux.sum(axis=1))[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.clip((nearest - (above - flux)) / flux, 0.0, 1.0)
+    share = np.where(flux > 0.0, share, 0.0)
+    warm = np.where(hot > 0.0, pool.hot_temperature, 0.0)[at][:, None]
+    result[WEST][open_] = share * warm + (1.0 - share) * pool.supply_temperature[at][:, None]
+    return result
+
+
+def entering_temperature(energy: EnergyProblem, inlet: Array, columns: Flags) -> float:
+    """Mean temperature [K] of the oil that enters the first faces of `columns` (n,)."""
+    open_ = energy.flow.inlet & columns[:, None]
+    flux = np.maximum(layer_fluxes(energy, WEST, open_), 0.0)
+    entering = inlet[WEST][open_].reshape(int(open_.sum()), -1)
+    total = float(flux.sum())
+    return float(np.sum(flux * entering)) / total if total > 0.0 else math.nan
 
 
 def _exits(energy: EnergyProblem) -> NDArray[np.bool_]:
@@ -300,7 +400,7 @@ def _enthalpy_out(
             open_, out = _exits(energy), leaving[0]
         else:
             open_, out = ~energy.interior[face] & ~energy.fixed, leaving[1]
-        entering = inlet_temperature[face][open_][:, None]
+        entering = inlet_temperature[face][open_].reshape(int(open_.sum()), -1)
         if face == WEST:
             part = energy.carry_over[open_][:, None]
             entering = part * before[open_] + (1.0 - part) * entering

@@ -61,10 +61,9 @@ class _Motions:
         """What unit displacements, then unit velocities, add to each cell's continuity."""
         state, shapes = self.state, self.displacements.shapes
         squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
-        right = [_displacement_sources(state, shapes), -shapes[:, CENTER] * squeezed]
-        sources = np.concatenate(right)
-        sources[:, state.operator.fixed] = 0.0
-        return sources
+        squeezing = -shapes[:, CENTER] * squeezed
+        squeezing[:, state.operator.fixed] = 0.0
+        return np.concatenate([_displacement_sources(state, shapes), squeezing])
 
     def reaction(self, right: Array, factor: Factor | None = None) -> NDArray[Any]:
         """-dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
@@ -155,6 +154,8 @@ def stiffness_matrix(state: FilmState) -> Array:
 def _displacement_sources(state: FilmState, shapes: Array) -> Array:
     """Return what unit displacements add to each cell's continuity [m3/s per m], (q, n, m).
 
+    In cells of openings, to the balance of oil that fills the next pad (`StarvedFactor`).
+
     Parameters
     ----------
     state : FilmState
@@ -164,10 +165,11 @@ def _displacement_sources(state: FilmState, shapes: Array) -> Array:
     operator, layers = state.operator, state.layers
     sources = np.zeros((len(shapes), *operator.area.shape))
     rates = np.empty((3, 0, 0)) if layers.rates is None else layers.rates
+    returned = getattr(state.solution.factor, "returned", np.zeros((2, len(operator.dx))))
     _sources(
         operator.conductance, operator.interior, operator.fixed_pressure, operator.face_thickness,
         operator.couette, operator.fixed, state.solution.raw, shapes, layers.f2, layers.f2_axial,
-        layers.g, rates, state.center_thickness, sources,
+        layers.g, rates, state.center_thickness, returned, sources,
     )  # fmt: skip
     return sources
 
@@ -175,7 +177,7 @@ def _displacement_sources(state: FilmState, shapes: Array) -> Array:
 @kernel
 def _sources(
     conductance, interior, fixed_pressure, face_h, couette, fixed, pressure, shapes, f2, f2_axial,
-    g, rates, center_h, sources,
+    g, rates, center_h, returned, sources,
 ):  # fmt: skip
     n, m = pressure.shape
     varying = rates.shape[1] > 0
@@ -199,6 +201,8 @@ def _sources(
                     if joined:
                         change = 0.5 * (change + shapes[d, 1 + (face ^ 1), k, q])
                     sources[d, i, j] += rate * change
+                    if face < 2 and not joined and returned[face, i] != 0.0:
+                        sources[d, k, 0] -= returned[face, i] * rate * change
                 if not varying:
                     continue
                 # What the flow law changes at both cells behind the face, in their shares.
@@ -217,6 +221,8 @@ def _sources(
                     other /= center_h[k, q]
                 for d in range(shapes.shape[0]):
                     sources[d, i, j] += own * shapes[d, 0, i, j] + other * shapes[d, 0, k, q]
+                    if face < 2 and not joined and returned[face, i] != 0.0:
+                        sources[d, k, 0] -= returned[face, i] * own * shapes[d, 0, i, j]
 
 
 def following_stiffness(film: ThermalFilm) -> tuple[Array, bool]:

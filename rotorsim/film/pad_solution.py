@@ -98,7 +98,11 @@ def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
         full = state.solution.full
         following, off = search(state)
         if len(search.unloaded) == len(search.frames):
-            return _Cold(state, 1.0, step, True)
+            nearer = search.nearer(q)
+            if nearer is None or step > _MAX_REVISIONS:
+                return _Cold(state, 1.0, step, True)
+            q, full = search.settle(nearer, layers), None
+            continue
         if search.changed(q) and revisions < _MAX_REVISIONS:
             revisions += 1
             q, full, best = search.settle(q, layers), None, np.inf
@@ -198,6 +202,14 @@ def _conclude(
             else "no journal position off the pads carries the load: the film carries "
             f"{float(np.hypot(*state.force[:2])):.4g} N at the last one tried; a heavier load "
             "needs more speed, viscosity or size"
+        )
+    elif not converged and not search.supports_load:
+        status = SolveStatus.NO_EQUILIBRIUM
+        loaded = sorted(set(range(len(search.frames))) - search.unloaded)
+        message = (
+            f"only pad {', '.join(str(number + 1) for number in loaded)} can be balanced at "
+            "positive pressure, whose pivots cannot add up to the load's direction: the others "
+            "float or flutter (preload or an offset pivot would load them)"
         )
     elif not converged:
         status = SolveStatus.NOT_CONVERGED

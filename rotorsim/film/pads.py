@@ -201,7 +201,7 @@ class PadSearch:
         while thinnest(self._with_room(q)) <= 0.05 * clearance and q[0] > 1e-3 * clearance:
             q[0] *= 0.7
         if thinnest(q) <= 0.0:
-            raise NoFilmError("the tilted journal touches a pad even when it is centred")
+            raise NoFilmError("the misaligned journal touches a pad even when it is centred")
         return q
 
     def at(self, angle: float) -> Array | None:
@@ -228,6 +228,14 @@ class PadSearch:
             if towards > 1e-9 and frame.unknowns.pivot is None:
                 distances.append((1.0 - frame.preload) * frame.clearance / towards)
         return min(distances)
+
+    def nearer(self, q: Array) -> Array | None:
+        """Half-way on to the pads along the load, for a journal that no pad carries where it is."""
+        if isinstance(self.target, EccentricityTarget) or is_unloaded(self.target):
+            return None
+        q = q.copy()
+        q[0] += 0.5 * (min(self.reach(0.0), q[0] + self.whole.bearing.radial_clearance) - q[0])
+        return q if self.whole.geometry.thinnest_at(self._with_room(q)) > 0.0 else None
 
     def _with_room(self, q: Array) -> Array:
         """Level the pads, and push flexible pivots back where the journal would touch."""
@@ -346,7 +354,7 @@ class PadSearch:
         scale = 1.0
         for number, frame in enumerate(self.frames):
             before, after = frame.eccentricity(old)[0], frame.eccentricity(new)[0]
-            room = _LARGEST_STEP * frame.clearance
+            room = _LARGEST_STEP * max(frame.clearance, -before)
             if number in self.unloaded:
                 room = 0.5 * (frame.clearance - before)
                 after = max(after, before)
@@ -432,7 +440,13 @@ class PadSearch:
     @property
     def _skewed(self) -> bool:
         """Whether E_n and E_t, at the mid-plane, do not tell where a pad's root lies."""
-        return self._fed or not self.whole.bearing.is_symmetric
+        return self._fed or self._starves or not self.whole.bearing.is_symmetric
+
+    @property
+    def _starves(self) -> bool:
+        """Whether a pad's film may begin behind its leading edge."""
+        bearing = self.whole.bearing
+        return bearing.supply_flow is not None and self.whole.rupture.conserves_mass
 
     def _keep_out(self, unloaded: frozenset[int], q: Array) -> None:
         for number in self.unloaded - unloaded:
@@ -541,10 +555,23 @@ class PadSearch:
 
     @property
     def supports_load(self) -> bool:
-        """Whether forces along the pivots can add up to the load's direction."""
-        if self._fed or is_unloaded(self.target):
+        """Whether forces along the pivots of loaded pads can add up to what they must carry.
+
+        That is the load less what the pressure in the openings carries.
+        """
+        if is_unloaded(self.target):
             return True
-        angles = [math.remainder(f.pad.pivot_angle, 2.0 * math.pi) for f in self.frames]
+        problem = self.whole
+        openings = np.where(problem.topology.fixed, problem.topology.area, 0.0)
+        fed = problem.geometry.forces(problem.topology.fixed_pressure[0] * openings)[:2]
+        if isinstance(self.target, EccentricityTarget):
+            if np.abs(fed).max() > 0.0:
+                return True
+            direction = 0.0
+        else:
+            direction = math.atan2(fed[1], self.target.load + fed[0])
+        loaded = [f for k, f in enumerate(self.frames) if k not in self.unloaded]
+        angles = [math.remainder(f.pad.pivot_angle - direction, 2.0 * math.pi) for f in loaded]
         if any(abs(angle) < 1e-9 for angle in angles):
             return True
         ahead = [angle for angle in angles if 0.0 < angle < math.pi]

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..model import (
     Bearing,
     Case,
+    Feed,
     FilmSettings,
     Inception,
     Lubricant,
@@ -22,7 +23,7 @@ from .geometry import CENTER, FilmGeometry, film_geometry
 from .layers import LayerIntegrals
 from .mesh import FilmMesh, build_mesh
 from .operator import FaceTopology, FilmOperator, face_topology, film_operator
-from .rupture import PressureSolution, RuptureCondition, rupture_condition
+from .rupture import OilSupply, PressureSolution, RuptureCondition, rupture_condition
 
 Array = NDArray[np.float64]
 
@@ -128,8 +129,17 @@ def film_problem(
         topology=face_topology(mesh, supply),
         geometry=film_geometry(bearing, mesh),
         flow_law=flow_law("laminar"),
-        rupture=rupture_condition(case.film.cavitation),
+        rupture=rupture_condition(case.film.cavitation, _oil_supply(bearing, mesh, case.thermal)),
     )
+
+
+def _oil_supply(bearing: Bearing, mesh: FilmMesh, thermal: ThermalSettings) -> OilSupply | None:
+    """Oil for the leading edges of pads that nothing but it can fill."""
+    if bearing.supply_flow is None or bearing.feed is Feed.FLOODED:
+        return None
+    count = len(bearing.pads)
+    flow = np.full(count, bearing.supply_flow / count / mesh.multiplicity)
+    return OilSupply(flow, thermal.hot_oil_carry_over, mesh.supply[:, 0])
 
 
 def film_state(

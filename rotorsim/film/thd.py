@@ -92,7 +92,7 @@ class ThermalFilm:
         [Pa s]
     energy : EnergyProblem
     walls : Walls
-    inlet_temperature : (4, n, m) array
+    inlet_temperature : (4, n, m) or (4, n, m, k) array
         [K]
     leaving_temperature : (2, n, m, k) array
         Of the oil that leaves each cell along the film and the axis [K].

@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..bearing.dynamics import FilmDynamics, rigid_growth_rates
 from ..bearing.table import CoefficientTable
 from ..bearing.whirl import rigid_thresholds, routh_coefficients
 from ..errors import InputError
 from ..rows import result_html, table_html
 from .rates import growth_rate_map
+from .support import MatrixTable
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,6 +27,8 @@ UNKNOWN, UNSTABLE, STABLE = -1, 0, 1
 @dataclass(frozen=True, eq=False)
 class StabilityMap:
     """Verdicts of the rigid rotor over the table's dimensions and mass.
+
+    Between tilting pads, of rotor and pads together.
 
     Attributes
     ----------
@@ -210,7 +214,47 @@ def _dataset(
         margin,
         {"units": "1", "long_name": "1 - mass over critical mass"},
     )
+    if "full_stiffness" in table.dataset:
+        _put_full(table, speeds, masses, known[..., 0], load, data)
     coords = {d: table.dataset[d].variable for d in table.choices}
     coords["speed"] = xr.Variable("speed", speeds, {"units": "rad s-1", "long_name": "shaft speed"})
     coords["mass"] = xr.Variable("mass", masses, {"units": "kg", "long_name": "mass per bearing"})
     return xr.Dataset(data, coords, dict(table.dataset.attrs))
+
+
+def _put_full(
+    table: CoefficientTable,
+    speeds: NDArray[np.float64],
+    masses: NDArray[np.float64],
+    known: NDArray[np.bool_],
+    load: NDArray[np.float64],
+    data: dict[str, tuple[tuple[str, ...], NDArray, dict]],
+) -> None:
+    """Put in the verdicts on rotor and pads together, in place of those on the rotor alone."""
+    clearance = table.dataset["radial_clearance"].values
+    for name, (dims, value, attributes) in data.items():
+        data[name] = dims, np.array(value), attributes
+    values = {name: entry[1] for name, entry in data.items()}
+    for index in np.ndindex(tuple(table.dataset.sizes[d] for d in table.choices)):
+        slices = {d: slice(i, i + 1) for d, i in zip(table.choices, index, strict=True)}
+        good = table.converged[index]
+        if not good.any():
+            continue
+        part = CoefficientTable(table.dataset.isel({**slices, "speed": good}))
+        support = MatrixTable.of_pads(part)
+        where = dict(zip(table.choices, index, strict=True))["radial_clearance"]
+        for place in np.flatnonzero(known[index]):
+            at, speed = (*index, int(place)), float(speeds[place])
+            k, c, m = support.matrices(speed)
+            film = FilmDynamics(np.eye(len(k)), speed, k, c, mass=m, names=support.unknowns)
+            found = film.threshold(load=float(load[at]), radial_clearance=float(clearance[where]))
+            for name in (
+                "critical_mass", "critical_mass_dimensionless", "whirl_frequency_ratio",
+            ):  # fmt: skip
+                value = getattr(found, name)
+                values[name][at] = np.nan if value is None else value
+            values["stability"][at] = str(found.stability)
+            rates = rigid_growth_rates(film, masses)
+            values["growth_rate"][at] = rates
+            values["verdict"][at] = np.where(rates < 0.0, STABLE, UNSTABLE)
+            values["mass_margin"][at] = 1.0 - masses / values["critical_mass"][at]

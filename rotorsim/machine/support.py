@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..bearing.operating_point import condensed
+from ..bearing.operating_point import kept_throughout
 from ..bearing.table_data import PAD_MATRICES
 from ..errors import InputError, OutOfRangeError
 
@@ -234,23 +234,9 @@ class MatrixTable(Support):
     @classmethod
     def _over(cls, speeds: Array, names: list[str], matrices: Array) -> MatrixTable:
         """Keep the unknowns that are there at all speeds; eliminate the others, synchronously."""
-        k, c, m = matrices
-        moving: NDArray[np.bool_] = np.isfinite(np.diagonal(k, axis1=1, axis2=2))
-        if not moving[:, :2].all():
+        if not np.isfinite(np.diagonal(matrices[0], axis1=1, axis2=2))[:, :2].all():
             raise InputError("holds points that did not converge", key="table")
-        stays = np.asarray(moving.all(axis=0), dtype=bool)
-        own, size = np.flatnonzero(stays), int(stays.sum())
-        kept = np.empty((3, speeds.size, size, size))
-        for place, speed in enumerate(speeds):
-            gone = np.flatnonzero(np.asarray(moving[place] & ~stays, dtype=bool))
-            kept[:, place] = [matrix[place][own[:, None], own] for matrix in (k, c, m)]
-            order = np.concatenate([own, gone])
-            block = (order[:, None], order)
-            s = 1j * float(speed)
-            law = k[place][block] + s * c[place][block] + s * s * m[place][block]
-            change = condensed(law, size) - law[:size, :size]
-            kept[0, place] += change.real
-            kept[1, place] += change.imag / float(speed)
+        own, kept = kept_throughout(speeds, matrices)
         unknowns = tuple(names[place] for place in own)
         coupled = sum(name in _JOURNAL for name in unknowns)
         return cls(speeds, *kept, unknowns=unknowns, coupled=coupled)

@@ -4,7 +4,7 @@ SI units throughout (Pa, m, s, kg, K, rad). Angles in the load frame: from the s
 positive in the direction of rotation.
 """
 
-from .bearing import Arc, Bearing, Groove
+from .bearing import Arc, Bearing, Feed, Groove
 from .case import Case
 from .lubricant import ExponentialViscosity, Lubricant, ViscosityLaw, WaltherViscosity
 from .operating import EccentricityTarget, LoadTarget, Target
@@ -41,6 +41,7 @@ __all__ = [
     "Cavitation",
     "EccentricityTarget",
     "ExponentialViscosity",
+    "Feed",
     "FilmSettings",
     "Groove",
     "Inception",

@@ -52,6 +52,17 @@ class BearingProfile(StrEnum):
     OFFSET_HALVES = "offset_halves"
 
 
+class Feed(StrEnum):
+    """How the oil comes to tilting pads, and what becomes of the hot oil that arrives with it."""
+
+    FLOODED = "flooded"
+    """The housing is full: hot oil and supply mix, and the films draw what they ask for."""
+    LEADING_EDGE_GROOVE = "leading_edge_groove"
+    """The supply enters first, on the pad's side; hot oil makes up the rest, on the journal's."""
+    SPRAY_BAR = "spray_bar"
+    """Jets meet the hot oil on the journal; what the film does not take is thrown off."""
+
+
 @dataclass(frozen=True)
 class Groove:
     """An axial supply groove.
@@ -166,6 +177,9 @@ class Bearing:
         checked.
     pads : Tilting pads in place of a bore, in the direction of rotation. The openings between them
         are the grooves: one before each pad, at ambient pressure unless `grooves` gives them.
+    feed : Of tilting pads.
+    supply_flow : Of oil to all tilting pads together, in equal parts [m3/s]; None: what the films
+        ask for.
     profile : Shorthand for the arcs of a usual bore, with its `preload` and `offset`.
     """
 
@@ -178,6 +192,8 @@ class Bearing:
     misalignment: Annotated[tuple[Slope, Slope], Key("tilt")] = (0.0, 0.0)
     roughness: Annotated[float, Quantity("length", "1 um", "not_negative")] = 0.0
     pads: Annotated[tuple[Pad, ...], NOT_IN_FILES] = ()
+    feed: Annotated[Feed, NOT_IN_FILES] = Feed.FLOODED
+    supply_flow: Annotated[float | None, NOT_IN_FILES] = None
     profile: BearingProfile | None = field(default=None, compare=False)
     preload: Preload | None = field(default=None, compare=False)
     offset: Offset | None = field(default=None, compare=False)

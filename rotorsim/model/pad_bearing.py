@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Annotated, Any
 
 from ..errors import InputError
-from .bearing import Bearing, Groove
+from .bearing import Bearing, Feed, Groove
 from .entries import (
     SEVERAL,
     Angle,
@@ -45,16 +45,9 @@ class PadLoad(StrEnum):
     ON_PAD = "on_pad"
 
 
-class Feed(StrEnum):
-    """How the oil comes to the pads."""
-
-    FLOODED = "flooded"
-    LEADING_EDGE_GROOVE = "leading_edge_groove"
-    SPRAY_BAR = "spray_bar"
-
-
 CARRY_OVER = {Feed.FLOODED: 1.0, Feed.LEADING_EDGE_GROOVE: 0.5, Feed.SPRAY_BAR: 0.5}
-"""Part of the hot oil that reaches the next pad where `hot_oil_carry_over` is not given.
+"""Part of the hot oil that reaches the next pad where neither `hot_oil_carry_over` nor
+`supply_flow` is given, whose balance with what the film takes would tell.
 
 Flooded gaps mix all of it in. Directed feeding keeps a part away; how much depends on its design,
 and one half is no more than a middle: measured bearings should be given theirs.
@@ -95,6 +88,7 @@ class PadSet(PadEntry):
         line. In place of it, `pivot_angle` of the first pad.
     supply_pressure : In the openings between the pads, gauge [Pa].
     supply_temperature : Of the oil supplied [K].
+    supply_flow : To all pads together, in equal parts [m3/s]; None: what the films ask for.
     """
 
     count: Annotated[int, Number(least=1, most=64)] | None = None
@@ -102,6 +96,7 @@ class PadSet(PadEntry):
     feed: Feed = Feed.FLOODED
     supply_pressure: Annotated[float, Quantity("pressure", "20 kPa", "not_negative")] = 0.0
     supply_temperature: Temperature | None = None
+    supply_flow: Annotated[float, Quantity("volume flow")] | None = None
 
 
 def tilting_pad_bearing(
@@ -132,9 +127,14 @@ def tilting_pad_bearing(
         )
         for middle, extent in gaps(built)
     )  # fmt: skip
+    if pads.supply_flow is not None and pads.supply_pressure > 0.0:
+        raise InputError(
+            "either supply_flow or supply_pressure: a flow finds its own pressure",
+            key="bearing.pads.supply_flow",
+        )
     return Bearing(
         journal_radius, length, radial_clearance, grooves, misalignment=misalignment,
-        roughness=roughness, pads=built,
+        roughness=roughness, pads=built, feed=pads.feed, supply_flow=pads.supply_flow,
     )  # fmt: skip
 
 

@@ -31,7 +31,8 @@ def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
     Returns
     -------
     (count, 2) array
-        At mid-plane [m]; the clearance circle of the plain, aligned bearing.
+        At mid-plane [m]; the clearance circle of the plain, aligned bearing. Between tilting pads,
+        which turn out of the way, the lines on which a pivot stands in the journal's.
 
     Examples
     --------
@@ -44,6 +45,11 @@ def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
     ray = np.column_stack([np.cos(phi), np.sin(phi)])
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance * ray
+    if bearing.pads:
+        normal, assembled = _pivots(bearing)
+        towards = np.maximum(ray @ normal.T, 1e-9)
+        reach = np.minimum((assembled / towards).min(axis=1), 2.0 * assembled.max())
+        return reach[:, None] * ray
     theta = _land_angles(bearing)
     bore = bearing.radial_clearance + bore_offset(bearing, theta)
     normal = np.column_stack([np.cos(theta), np.sin(theta)])
@@ -78,10 +84,14 @@ def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
     -------
     (n,) array
         Zero or less where they touch. c - e for the plain, aligned bearing; else the least over
-        angles half a degree apart and over both ends of a tilted journal.
+        angles half a degree apart and over both ends of a tilted journal. Of tilting pads, that at
+        their pivots, where these do not give way.
     """
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance - np.hypot(x, y)
+    if bearing.pads:
+        normal, assembled = _pivots(bearing)
+        return np.asarray((assembled - np.column_stack([x, y]) @ normal.T).min(axis=1))
     theta = _land_angles(bearing)
     bore = bearing.radial_clearance + bore_offset(bearing, theta)
     cos, sin = np.cos(theta), np.sin(theta)
@@ -93,6 +103,14 @@ def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
             h = bore - np.multiply.outer(ex[part], cos) - np.multiply.outer(ey[part], sin)
             least[part] = np.minimum(least[part], h.min(axis=1))
     return least
+
+
+def _pivots(bearing: Bearing) -> tuple[Array, Array]:
+    """Directions (p, 2) of the pivots, and assembled clearances there [m]; rigid ones, if any."""
+    pads = [pad for pad in bearing.pads if pad.pivot.is_rigid] or bearing.pads
+    angles = np.array([pad.pivot_angle for pad in pads])
+    clearances = [(1.0 - bearing.preload_of(pad)) * bearing.clearance_of(pad) for pad in pads]
+    return np.column_stack([np.cos(angles), np.sin(angles)]), np.array(clearances)
 
 
 def _land_angles(bearing: Bearing) -> Array:

@@ -16,13 +16,15 @@ from ..compiled import compiled
 from ..errors import InputError
 from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
 from ..rotor import Rotor
+from .film_force import SolvedFilmForce
 from .forces import CompilableForce, CompiledForce
 from .kernels import film_force, film_force_series
 from .problem import OrbitProblem
 
 Array = NDArray[np.float64]
 Rates = Callable[[float, Array], Array]
-FilmSeries = Callable[[Array], Array]
+FilmSeries = Callable[[Array, Array], Array]
+Tangent = Callable[[float, Array], Rates]
 
 _CONSTANT, _HARMONIC, _HALF_SINE = 0.0, 1.0, 2.0
 """Time functions that the compiled equations know."""
@@ -52,15 +54,21 @@ def initial_state(problem: OrbitProblem, equilibrium: tuple[float, float]) -> Ar
     state = np.zeros(2 * size + extra)
     state[:2] = np.asarray(equilibrium) + problem.initial_displacement
     state[size : size + 2] = problem.initial_velocity
-    if size > 2:
-        free = rotor.stiffness[2:, 2:]
-        pull = _static_load(problem)[2:] - rotor.stiffness[2:, :2] @ state[:2]
-        state[2:size] = np.linalg.lstsq(free, pull, rcond=None)[0]
+    own = slice(2, size - len(problem.pads))
+    if own.stop > 2:
+        free = rotor.stiffness[own, own]
+        pull = _static_load(problem)[own] - rotor.stiffness[own, :2] @ state[:2]
+        state[own] = np.linalg.lstsq(free, pull, rcond=None)[0]
+    if isinstance(problem.force, SolvedFilmForce):
+        state[own.stop : size] = problem.force.rest[2:]
     return state
 
 
-def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries]:
-    """State rates, and the film force along (n, 5) motion."""
+def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries, Tangent | None]:
+    """State rates, and the film force on the journal along (n, 5) motion and states (n, k).
+
+    Last the rates with the film's force linear about a state, where it knows its K and C.
+    """
     rotor, controller = problem.rotor, problem.controller
     shapes, times = pack_loads(problem.loads, rotor)
     if any(problem.static_load):
@@ -94,28 +102,57 @@ def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries]:
         return _compiled_rates(force.compiled(min(speeds), max(speeds)), structure)
     size, schedule = rotor.mass.shape[0], problem.schedule.knots
 
-    def rates(t: float, s: Array) -> Array:
-        speed = _shaft(t, schedule)[1]
-        vx, vy = float(s[size]), float(s[size + 1])
-        fx, fy = force.force(float(s[0]), float(s[1]), vx, vy, speed)
-        return _motion_rates(t, s, fx, fy, *structure)
+    def speed_at(t: float) -> float:
+        return float(_shaft(t, schedule)[1])
 
-    def film(motion: Array) -> Array:
+    if isinstance(force, SolvedFilmForce):
+        moving = problem.moving
+
+        def parts(s: Array) -> tuple[Array, Array]:
+            return moving(s[..., :size]), moving(s[..., size : 2 * size])
+
+        def rates(t: float, s: Array) -> Array:
+            return _motion_rates(t, s, force.forces(*parts(s), speed_at(t)), *structure)
+
+        def tangent(t: float, s: Array) -> Rates:
+            here = parts(s)
+            value, stiffness, damping = force.linear(*here, speed_at(t))
+
+            def near(_t: float, s: Array) -> Array:
+                dq, dv = (there - here for there, here in zip(parts(s), here, strict=True))
+                return _motion_rates(t, s, value - stiffness @ dq - damping @ dv, *structure)
+
+            return near
+
+        def film(motion: Array, states: Array) -> Array:
+            rows = zip(*parts(states), motion[:, 4], strict=True)
+            found = [force.forces(q, v, float(speed))[:2] for q, v, speed in rows]
+            return np.array(found).reshape(-1, 2)
+
+        return rates, film, tangent
+
+    def plain_rates(t: float, s: Array) -> Array:
+        motion = float(s[0]), float(s[1]), float(s[size]), float(s[size + 1])
+        return _motion_rates(t, s, np.array(force.force(*motion, speed_at(t))), *structure)
+
+    def plain_film(motion: Array, _states: Array) -> Array:
         return np.array([force.force(*row) for row in motion]).reshape(-1, 2)
 
-    return rates, film
+    return plain_rates, plain_film, None
 
 
-def _compiled_rates(form: CompiledForce, structure: tuple[Array, ...]) -> tuple[Rates, FilmSeries]:
+def _compiled_rates(
+    form: CompiledForce, structure: tuple[Array, ...]
+) -> tuple[Rates, FilmSeries, None]:
     kind, numbers, table = form.kind, form.numbers, form.table
 
     def rates(t: float, s: Array) -> Array:
         return _compiled_state_rates(t, s, kind, numbers, table, *structure)
 
-    def film(motion: Array) -> Array:
+    def film(motion: Array, _states: Array) -> Array:
         return film_force_series(kind, motion, numbers, table)
 
-    return rates, film
+    return rates, film, None
 
 
 def pack_loads(loads: Sequence[Load], rotor: Rotor) -> tuple[Array, Array]:
@@ -210,8 +247,7 @@ def _load_series(t: Array, shapes: Array, times: Array) -> Array:
 def _motion_rates(
     t: float,
     state: Array,
-    fx: float,
-    fy: float,
+    film: Array,
     rotor: Array,
     unbalance: Array,
     schedule: Array,
@@ -220,8 +256,9 @@ def _motion_rates(
     controller: Array,
     reference: Array,
 ) -> Array:
-    """State rates from a known film force on the journal.
+    """State rates from known forces of the film.
 
+    film: on the journal's two unknowns, and on the last ones, those of pads;
     state: displacements, velocities, controller states; rotor: inverse mass, damping, stiffness,
     gyroscopic, circulatory matrix; unbalance: (n_nodes, 3) mass times radius, phase, place of x;
     shapes, times: see
@@ -231,7 +268,8 @@ def _motion_rates(
     rates = np.empty(state.size)
     force = np.zeros(size)
     phi, w, alpha = _shaft(t, schedule)
-    force[0], force[1] = fx, fy
+    force[:2] = film[:2]
+    force[size + 2 - film.size :] += film[2:]
     for k in range(unbalance.shape[0]):
         if unbalance[k, 0] != 0.0:
             c, s = math.cos(phi + unbalance[k, 1]), math.sin(phi + unbalance[k, 1])
@@ -300,7 +338,8 @@ def _compiled_state_rates(
     size = rotor.shape[1]
     speed = _shaft(t, schedule)[1]
     vx, vy = float(state[size]), float(state[size + 1])
-    fx, fy = film_force(kind, state[0], state[1], vx, vy, speed, numbers, table)
+    film = np.empty(2)
+    film[0], film[1] = film_force(kind, state[0], state[1], vx, vy, speed, numbers, table)
     return _motion_rates(
-        t, state, fx, fy, rotor, unbalance, schedule, shapes, times, controller, reference
+        t, state, film, rotor, unbalance, schedule, shapes, times, controller, reference
     )

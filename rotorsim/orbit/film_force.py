@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
+from ..bearing.dynamics import pad_mass
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
+from ..film.geometry import film_geometry, pad_unknowns, rotation
 from ..film.layers import LayerIntegrals
+from ..film.linearization import linearize
+from ..film.pad_solution import solve_pads
 from ..film.problem import FilmProblem, FilmState, film_state
 from ..film.solution import FilmSolution, solve_film
 from ..model import Bearing, Case, EccentricityTarget, Inception, LoadTarget, ThermalModel
 from ..status import SolveStatus
-from .clearance import minimum_film
 from .film_map import MAPPED, Progress, film_force_map
 from .force_map import FilmMapForce
 from .forces import BearingForce
@@ -62,6 +67,8 @@ class SolvedFilmForce:
         Angle of the problem's x axis in the load frame [rad].
     bearing : Bearing
         In the load frame.
+    rest : (q,) array
+        Displacements that leave a film everywhere, those of the operating point; problem's frame.
     name : str
 
     Notes
@@ -74,6 +81,7 @@ class SolvedFilmForce:
     layers: LayerIntegrals
     frame: float
     bearing: Bearing
+    rest: Array
     name: str = "film"
     _full: NDArray[np.bool_] | None = field(default=None, init=False, repr=False)
 
@@ -86,54 +94,111 @@ class SolvedFilmForce:
     def of(cls, case: Case, solution: FilmSolution) -> SolvedFilmForce:
         """Force of the film that was solved for `case`, its viscosity field kept."""
         mesh = solution.problem.mesh
+        # All pads move, those without load as well.
+        geometry = film_geometry(solution.problem.bearing, mesh)
         # A moving journal may press the film in several places at once. The rule of one stretch of
         # film from each beginning is for a film at rest: here it would make the force jump.
         mesh = replace(mesh, region=np.full_like(mesh.region, -1))
         return cls(
-            problem=replace(solution.problem, mesh=mesh),
+            problem=replace(solution.problem, mesh=mesh, geometry=geometry),
             layers=solution.state.layers,
             frame=solution.frame,
             bearing=case.bearing,
+            rest=solution.state.displacement,
             name="film" if solution.thermal is None else "film_frozen_viscosity",
         )
 
-    def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Film force [N]; ArithmeticError where the film cannot be solved."""
-        fx, fy = self.film(x, y, vx, vy, speed).force
-        cos, sin = math.cos(self.frame), math.sin(self.frame)
-        return float(fx * cos - fy * sin), float(fx * sin + fy * cos)
+    @property
+    def pads(self) -> tuple[str, ...]:
+        """Names of the displacements besides the journal's: tilts, pivots and pitches of pads."""
+        return self.problem.geometry.displacements.names[2:]
 
-    def film(self, x: float, y: float, vx: float, vy: float, speed: float) -> FilmState:
-        """Film with the journal there, in the problem's frame; ArithmeticError as `force`."""
-        x, y = self._within(x, y)
-        cos, sin = math.cos(self.frame), math.sin(self.frame)
+    @cached_property
+    def pad_mass(self) -> Array:
+        """Mass matrix of the pads' displacements."""
+        return pad_mass(self.bearing)[2:, 2:]
+
+    @cached_property
+    def scales(self) -> Array:
+        """What changes the film by about the clearance, of each displacement."""
+        return self.problem.geometry.displacements.scales
+
+    @cached_property
+    def _turn(self) -> Array:
+        """From the problem's frame to the load frame, (q, q)."""
+        return np.asarray(block_diag(rotation(self.frame), np.eye(len(self.pads))))
+
+    def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+        """Film force on the journal [N], pads at rest; ArithmeticError without a film."""
+        pads = self.rest[2:]
+        q, v = np.array([x, y, *pads]), np.array([vx, vy, *np.zeros(len(pads))])
+        fx, fy = self.forces(q, v, speed)[:2]
+        return float(fx), float(fy)
+
+    def forces(self, q: Array, v: Array, speed: float) -> Array:
+        """Generalised forces of film and pivots, (q,), on journal and pads, load frame.
+
+        Parameters
+        ----------
+        q, v : (q,) arrays
+            Displacements of journal and pads, and their rates.
+        speed : float
+            [rad/s]
+
+        Raises
+        ------
+        ArithmeticError
+            The film cannot be solved.
+        """
+        return self._turn @ self.film(q, v, speed).force - self._pivots(q)[0]
+
+    def linear(self, q: Array, v: Array, speed: float) -> tuple[Array, Array, Array]:
+        """`forces`, and their K and C there."""
+        state = self.film(q, v, speed)
+        stiffness, damping = (self._turn @ part @ self._turn.T for part in linearize(state))
+        held, tangent = self._pivots(q)
+        return self._turn @ state.force - held, stiffness + np.diag(tangent), damping
+
+    def _pivots(self, q: Array) -> tuple[Array, Array]:
+        """Forces of the pads' pivots, and their stiffnesses."""
+        held, tangent = np.zeros((2, len(q)))
+        for pad, own in zip(self.bearing.pads, pad_unknowns(self.bearing)[1], strict=True):
+            if own.pivot is not None:
+                held[own.pivot] = pad.pivot.force(float(q[own.pivot]))
+                tangent[own.pivot] = pad.pivot.stiffness_at(float(q[own.pivot]))
+        return held, tangent
+
+    def film(self, q: Array, v: Array, speed: float) -> FilmState:
+        """Film at these displacements and rates, in the problem's frame; errors as `forces`."""
         problem = self.problem
         if speed != problem.speed:
             problem = replace(problem, speed=speed)
         state = film_state(
-            problem,
-            (x * cos + y * sin, y * cos - x * sin),
-            self.layers,
-            velocity=(vx * cos + vy * sin, vy * cos - vx * sin),
+            problem, self._within(self._turn.T @ q), self.layers, velocity=self._turn.T @ v,
             start=self._full,
-        )
+        )  # fmt: skip
         if not (state.solution.converged and np.all(np.isfinite(state.force))):
             self._full = None
             raise SingularFilmError("the rupture condition was not met in the steps allowed")
         self._full = state.solution.full
         return state
 
-    def _within(self, x: float, y: float) -> tuple[float, float]:
-        """Pull a position that touches the bush back towards the centre."""
-        least = _THINNEST * self.radial_clearance
-        scale = 1.0
-        # the film is concave in the position, and wide open at the centre
-        for _ in range(60):
-            place = np.array([x * scale]), np.array([y * scale])
-            if float(minimum_film(self.bearing, *place)[0]) >= least:
-                break
-            scale *= 0.98 if scale > 0.9 else 0.9
-        return x * scale, y * scale
+    def thinnest(self, q: Array) -> Array:
+        """Smallest film thickness [m] at each row of `q`, (n, q), load frame."""
+        thinnest = self.problem.geometry.thinnest_at
+        return np.array([thinnest(self._turn.T @ row) for row in q])
+
+    def _within(self, q: Array) -> Array:
+        """Pull displacements at which the walls touch back towards those at rest."""
+        geometry, least = self.problem.geometry, _THINNEST * self.radial_clearance
+        h = geometry.thickness(q)
+        if geometry.thinnest(h) >= least:
+            return q
+        # The film falls linearly from where it is at rest.
+        rest = geometry.thickness(self.rest)
+        thin = geometry.land & (h < least)
+        share = np.clip((rest - least) / (rest - h), 0.0, 1.0)
+        return self.rest + float(share[:, thin.any(axis=0)].min()) * (q - self.rest)
 
 
 def can_be_mapped(case: Case) -> bool:
@@ -187,9 +252,12 @@ def loaded_film(
     if can_be_mapped(case):
         return _mapped(case, speed, cache, progress)
     solution = operating_film(case, speed)
-    load = float(np.hypot(*solution.state.force))
+    load = float(np.hypot(*solution.state.force[:2]))
     rpm = f"{speed * 30.0 / math.pi:.0f} rpm"
     notes = ["film solved at each step"]
+    if case.bearing.pads:
+        _check_inertia(case.bearing)
+        notes.append("all pads move, with their inertia")
     if solution.thermal is not None:
         notes.append(f"viscosity field of the operating point at {rpm}, frozen")
     if solution.problem.rupture.conserves_mass:
@@ -199,6 +267,15 @@ def loaded_film(
     if solution.problem.mesh.slot.any():
         notes.append(f"p = 0 held where the film is thickest at {rpm}")
     return LoadedFilm(SolvedFilmForce.of(case, solution), load, case.bearing, "; ".join(notes))
+
+
+def _check_inertia(bearing: Bearing) -> None:
+    if np.linalg.eigvalsh(pad_mass(bearing)[2:, 2:])[0] <= 0.0:
+        raise InputError(
+            "must be above 0, and so its inertias, where pads move in time; leave them out to have "
+            "them from the geometry",
+            key="bearing.pads.mass",
+        )
 
 
 def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | None) -> LoadedFilm:
@@ -224,7 +301,7 @@ def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | N
 def operating_film(case: Case, speed: float) -> FilmSolution:
     """Film at rest about which an orbit runs, at `speed` [rad/s]; InputError without one."""
     try:
-        solution = solve_film(case, speed)
+        solution = (solve_pads if case.bearing.pads else solve_film)(case, speed)
     except (NoFilmError, SingularFilmError) as error:
         raise InputError(
             f"the film of the orbit's operating point cannot be solved: {error}",

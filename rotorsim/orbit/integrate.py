@@ -17,7 +17,16 @@ from scipy.integrate import solve_ivp
 from ..errors import InputError
 from ..model.loads import BaseMotion, HarmonicForce
 from .analysis import recognise
-from .equations import FilmSeries, Rates, initial_state, load_on_rotor, pack_loads, right_hand_side
+from .equations import (
+    FilmSeries,
+    Rates,
+    Tangent,
+    initial_state,
+    load_on_rotor,
+    pack_loads,
+    right_hand_side,
+)
+from .film_force import SolvedFilmForce
 from .forces import ActuatedFilm, LinearForce, find_equilibrium
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import Method, OrbitProblem
@@ -46,6 +55,7 @@ class _Run:
     equilibrium: tuple[float, float]
     rates: Rates
     film: FilmSeries
+    tangent: Tangent | None
     tolerance: Array
     contact: Callable[[float, Array], float]
 
@@ -205,14 +215,15 @@ def _jacobian(run: _Run) -> Callable[[float, Array], Array]:
     least[size : 2 * size] *= max(problem.schedule.speeds)
 
     def jacobian(t: float, state: Array) -> Array:
-        before = np.array(run.rates(t, state))
+        rates = run.rates if run.tangent is None else run.tangent(t, state)
+        before = np.array(rates(t, state))
         steps = least.copy()
         steps[2 * size :] *= np.maximum(np.abs(state[2 * size :]), 1.0)
         columns = []
         for index, step in enumerate(steps):
             moved = state.copy()
             moved[index] += step
-            columns.append((run.rates(t, moved) - before) / (moved[index] - state[index]))
+            columns.append((rates(t, moved) - before) / (moved[index] - state[index]))
         return np.column_stack(columns)
 
     return jacobian
@@ -225,20 +236,24 @@ def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
         equilibrium = problem.equilibrium
     elif isinstance(force, LinearForce):
         equilibrium = force.position(speed)
+    elif isinstance(force, SolvedFilmForce) and force.pads:
+        equilibrium = float(force.rest[0]), float(force.rest[1])
     else:
         equilibrium = find_equilibrium(force, problem.static_load, speed)
     state = initial_state(problem, equilibrium)
     clearance, least = force.radial_clearance, problem.minimum_film
     size = rotor.mass.shape[0]
     tolerance = np.full(state.size, 1e-3 * problem.tolerance * clearance)
-    tolerance[size : 2 * size] *= max(problem.schedule.speeds)
+    if isinstance(force, SolvedFilmForce) and force.pads:
+        tolerance[size - len(force.pads) : size] *= force.scales[2:] / clearance
+    tolerance[size : 2 * size] = tolerance[:size] * max(problem.schedule.speeds)
 
     plain = problem.bearing is None or (problem.bearing.is_plain and problem.bearing.is_symmetric)
 
     def contact(_t: float, s: Array) -> float:
         if plain:
             return clearance - least - math.hypot(s[0], s[1])
-        return float(problem.film_at(s[:1], s[1:2])[0]) - least
+        return float(problem.film_at(s[None, :size])[0]) - least
 
     contact.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
     contact.direction = -1.0  # pyright: ignore[reportFunctionMemberAccess]
@@ -249,8 +264,8 @@ def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
             key="orbit.initial_displacement",
             value=problem.initial_displacement,
         )
-    rates, film = right_hand_side(problem)
-    return _Run(problem, equilibrium, rates, film, tolerance, contact), state
+    rates, film, tangent = right_hand_side(problem)
+    return _Run(problem, equilibrium, rates, film, tangent, tolerance, contact), state
 
 
 def _actuator_force(problem: OrbitProblem, motion: Array, y: Array) -> Array:
@@ -293,7 +308,7 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
     t, y = solution.t[:count], solution.y[:, :count]
     speed = problem.schedule.speed_at(t)
     motion = np.column_stack([y[0], y[1], y[size], y[size + 1], speed])
-    film = run.film(motion)
+    film = run.film(motion, y.T)
     actuator = _actuator_force(problem, motion, y)
     if isinstance(problem.force, ActuatedFilm):
         film = film - actuator
@@ -324,7 +339,7 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         load=load_on_rotor(problem.loads, problem.rotor, t),
         actuator_force=actuator,
         displacements=np.ascontiguousarray(y[:size].T),
-        min_film=problem.film_at(y[0], y[1]),
+        min_film=problem.film_at(y[:size].T),
         boundary=problem.boundary,
         samples_per_revolution=problem.samples_per_revolution,
         radial_clearance=problem.force.radial_clearance,
@@ -340,4 +355,5 @@ def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
         ),
         kind=problem.kind,
         note=problem.note,
+        pad_velocity=np.ascontiguousarray(y[2 * size - len(problem.pads) : 2 * size].T),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 import numpy as np
@@ -72,7 +72,10 @@ class Orbit:
     actuator_force : (n, 2) array
         On the journal [N]; zero without an actuator.
     displacements : (n, k) array
-        Of all k unknowns of the rotor [m]; the first two columns are x and y.
+        Of all k unknowns of the rotor [m]; the first two columns are x and y. Behind them those
+        of tilting pads on a nonlinear film [m, rad].
+    pad_velocity : (n, p) array
+        Rates of the pads' displacements, which are the last p of `displacements`.
     min_film : (n,) array
         Smallest film thickness [m]; c - e in a plain bearing.
     boundary : (m, 2) array
@@ -124,11 +127,23 @@ class Orbit:
     forcing: tuple[float, ...] = ()
     kind: str = ""
     note: str = ""
+    pad_velocity: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def revolutions(self) -> Array:
         """Turns of the shaft at each sample [-]."""
         return self.angle / (2.0 * np.pi)
+
+    @property
+    def film_motion(self) -> tuple[Array, Array]:
+        """Displacements of journal and pads (n, 2 + p), and their rates."""
+        pads = self.pad_velocity.shape[1]
+        if not pads:
+            return np.column_stack([self.x, self.y]), np.column_stack([self.vx, self.vy])
+        return (
+            np.column_stack([self.x, self.y, self.displacements[:, -pads:]]),
+            np.column_stack([self.vx, self.vy, self.pad_velocity]),
+        )
 
     @property
     def actuated(self) -> bool:
@@ -168,7 +183,7 @@ class Orbit:
 
 _SERIES = (
     "t", "x", "y", "vx", "vy", "speed", "angle", "fx", "fy", "load", "actuator_force",
-    "displacements", "min_film",
+    "displacements", "min_film", "pad_velocity",
 )  # fmt: skip
 
 

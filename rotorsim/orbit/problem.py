@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import block_diag
 
 from ..errors import InputError
 from ..model import Bearing
 from ..model.loads import Load
 from ..rotor import Rotor
+from ..rotor.rotor import MATRICES
 from .clearance import contact_boundary, minimum_film
 from .film_force import SolvedFilmForce
 from .forces import BearingForce, LinearForce
@@ -194,7 +196,8 @@ class OrbitProblem:
     ----------
     force : BearingForce
     rotor : Rotor
-        The film carries its first node; every node has x and y with mass.
+        The film carries its first node; every node has x and y with mass. Tilting pads on a film
+        that is solved become its last unknowns.
     schedule : SpeedSchedule
     static_load : (float, float)
         Shared out over the nodes as their masses [N]; (0, 0) switches it off.
@@ -260,8 +263,21 @@ class OrbitProblem:
             return 1e-8
         return 1e-5 if isinstance(self.force, SolvedFilmForce) else 1e-7
 
-    def film_at(self, x: Array, y: Array) -> Array:
-        """Smallest film thickness [m] with the journal at x, y [m]."""
+    @property
+    def pads(self) -> tuple[str, ...]:
+        """Names of the pads' displacements that are integrated: the rotor's last unknowns."""
+        return self.force.pads if isinstance(self.force, SolvedFilmForce) else ()
+
+    def moving(self, motion: Array) -> Array:
+        """Columns of the rotor's displacements or rates (..., n) that move the film."""
+        first = motion.shape[-1] - len(self.pads)
+        return np.concatenate([motion[..., :2], motion[..., first:]], axis=-1)
+
+    def film_at(self, displacements: Array) -> Array:
+        """Smallest film thickness [m] at displacements (..., n) of the rotor [m]."""
+        if isinstance(self.force, SolvedFilmForce) and self.pads:
+            return self.force.thinnest(self.moving(displacements))
+        x, y = displacements[:, 0], displacements[:, 1]
         if self.bearing is None:
             return self.force.radial_clearance - np.hypot(x, y)
         return minimum_film(self.bearing, x, y)
@@ -283,6 +299,8 @@ class OrbitProblem:
                 "the film must carry the first node and no other", key="rotor.bearing_nodes",
                 value=self.rotor.bearing_nodes,
             )  # fmt: skip
+        if isinstance(self.force, SolvedFilmForce) and self.pads:
+            object.__setattr__(self, "rotor", _with_pads(self.rotor, self.force))
         if np.linalg.eigvalsh(self.rotor.mass)[0] <= 0.0:
             raise InputError(
                 "must be positive definite: in time every node needs a mass, journals too",
@@ -306,3 +324,17 @@ class OrbitProblem:
                 key="orbit.relative_tolerance",
                 value=self.relative_tolerance,
             )
+
+
+def _with_pads(rotor: Rotor, force: SolvedFilmForce) -> Rotor:
+    """Put the pads' displacements behind the unknowns of the rotor's last node."""
+    last = rotor.nodes[-1]
+    if last.unknowns[-len(force.pads) :] == force.pads:
+        return rotor
+    none = np.zeros((len(force.pads), len(force.pads)))
+    return replace(
+        rotor,
+        mass=np.asarray(block_diag(rotor.mass, force.pad_mass)),
+        **{name: np.asarray(block_diag(getattr(rotor, name), none)) for name in MATRICES[1:]},
+        nodes=(*rotor.nodes[:-1], replace(last, unknowns=(*last.unknowns, *force.pads))),
+    )

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
+    from ..model import Bearing
     from ..study.control import ControlStudy
     from ..study.stability import Campbell
     from ..study.tolerances import ToleranceStudy
@@ -93,6 +94,10 @@ def figures(results: Results) -> Iterator[tuple[str, Figure]]:
     if results.films:
         yield "film", plots.film_maps(results.films_at_top_speed, title)
         yield "film_profiles", plots.film_profiles(results.films_at_top_speed, title)
+        if results.scenario.bearing.pads:
+            films = results.films_at_top_speed
+            bearing = _bearing_of(results, films[0].radial_clearance)
+            yield "pads", plots.pad_sections(films, bearing, title)
     if results.orbits:
         settings = results.scenario.orbit
         yield from orbit_figures(
@@ -128,6 +133,11 @@ def _map_planes(results: Results) -> list[xr.Dataset]:
     ]
 
 
+def _bearing_of(results: Results, clearance: float) -> Bearing:
+    """The scenario's bearing with one of its clearances [m], load frame."""
+    return results.scenario.case(clearance, results.scenario.thermal_models[0]).bearing
+
+
 def _marks(results: Results, clearance: float) -> dict[str, tuple[float, float]]:
     """The rotor on a map: at the highest speed, for which verdicts are given, and its orbits'."""
     mass, settings = results.rotor_mass, results.scenario.orbit
@@ -155,14 +165,16 @@ def _recording_contents(results: Results) -> RecordingContents:
 
     kinds = {orbit.kind for orbit in results.orbits}
     both = len({orbit.constant_speed for orbit in results.orbits}) > 1
-    radius = results.scenario.bearing.journal_radius
     return RecordingContents(
         title=results.scenario.title,
         summary=_markdown_summary(results),
         # Runs at one speed and through the speeds beside each other are the whole job.
         kind=kinds.pop() if len(kinds) == 1 and not both else "",
         orbits=results.orbits,
-        films=(*(film_at_rest(point, radius) for point in results.films), *results.film_motion),
+        films=(
+            *(film_at_rest(p, _bearing_of(results, p.radial_clearance)) for p in results.films),
+            *results.film_motion,
+        ),
         modes=results.modes,
         maps=tuple(_map_planes(results)),
         rotor_mass=results.rotor_mass,

@@ -115,6 +115,11 @@ def study_control(
     from ..orbit.forces import CompilableForce, find_equilibrium, linearize_force
 
     wishes = wishes or ControlWishes()
+    if case.bearing.pads:
+        raise InputError(
+            'is for a bore; on tilting pads use [orbit.actuator] with force = "linear"',
+            key="bearing.kind",
+        )
     film = loaded_film(case, speed)
     rest = find_equilibrium(film.force, (film.load, 0.0), speed)
     linear = Coefficients(*linearize_force(film.force, *rest, speed), speed)
@@ -230,6 +235,11 @@ def with_actuator(
 
     if not problem.schedule.is_constant:
         raise InputError("needs one speed, not a ramp", key="orbit.actuator")
+    if problem.pads:
+        raise InputError(
+            'goes with force = "linear" on tilting pads: its design knows the journal alone',
+            key="orbit.actuator",
+        )
     film, speed = problem.force, problem.schedule.speeds[0]
     if isinstance(film, LinearForce):
         rest = film.position(speed)

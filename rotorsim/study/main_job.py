@@ -34,6 +34,8 @@ _Result = TypeVar("_Result")
 Announce = Callable[[str], None]
 _MAP_CELLS = 241
 """Along each axis of the stability map."""
+_PAD_MAP_CELLS = 61
+"""With tilting pads, whose eigenvalues have no closed form."""
 _FILM_FRAMES = 12
 """Speeds at which the film's fields are kept for the recording."""
 
@@ -181,11 +183,12 @@ def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
     from ..machine.map import stability_map
 
     settings = scenario.stability
-    speeds = np.linspace(table.speeds[0], table.speeds[-1], _MAP_CELLS)
+    cells = _PAD_MAP_CELLS if "full_stiffness" in table.dataset else _MAP_CELLS
+    speeds = np.linspace(table.speeds[0], table.speeds[-1], cells)
     speeds = speeds if len(table.speeds) > 1 else table.speeds
     if settings is not None:
         return stability_map(table, np.asarray(settings.masses), speeds)
-    mass = np.linspace(0.05, 3.0, _MAP_CELLS) * _usual_mass(scenario, table)
+    mass = np.linspace(0.05, 3.0, cells) * _usual_mass(scenario, table)
     return stability_map(table, mass, speeds)
 
 

@@ -311,6 +311,9 @@ class FilmFrame:
     journal_radius, radial_clearance : [m]
     centre : (2,) array. Journal's centre [m].
     time : The moment in the run of this thermal model [s]; None: journal at rest.
+    bearing : Of tilting pads, load frame.
+    tilts, pivots : How its pads stand: tilts in the direction of rotation [rad], pivots outwards
+        [m].
     """
 
     thermal_model: str
@@ -324,6 +327,9 @@ class FilmFrame:
     radial_clearance: float
     centre: Array
     time: float | None = None
+    bearing: Bearing | None = None
+    tilts: tuple[float, ...] = ()
+    pivots: tuple[float, ...] = ()
 
     @property
     def length(self) -> float:
@@ -331,8 +337,8 @@ class FilmFrame:
         return float(self.y[-1] - self.y[0]) * self.y.size / (self.y.size - 1)
 
 
-def film_at_rest(point: OperatingPoint, journal_radius: float) -> FilmFrame:
-    """Film of an operating point that kept its fields; `journal_radius` in m.
+def film_at_rest(point: OperatingPoint, bearing: Bearing) -> FilmFrame:
+    """Film of an operating point that kept its fields; its bearing in the load frame.
 
     Raises InputError: The point was solved without its fields.
     """
@@ -349,11 +355,14 @@ def film_at_rest(point: OperatingPoint, journal_radius: float) -> FilmFrame:
         pressure=film.pressure,
         temperature=mean if warm else None,
         max_temperature=point.max_temperature if warm else None,
-        journal_radius=journal_radius,
+        journal_radius=bearing.journal_radius,
         radial_clearance=point.radial_clearance,
         centre=point.eccentricity_ratio
         * point.radial_clearance
         * np.array([np.cos(angle), np.sin(angle)]),
+        bearing=bearing if bearing.pads else None,
+        tilts=tuple(pad.tilt for pad in point.pads),
+        pivots=tuple(pad.pivot_displacement for pad in point.pads),
     )
 
 
@@ -363,6 +372,7 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
     Pressure is solved for the journal's position and velocity; the temperature is that of the
     operating point, as in the simulation. Moments at which no film is found are left out.
     """
+    from ..film.geometry import pad_unknowns
     from ..orbit.film_force import SolvedFilmForce, operating_film
 
     case = _shown_case(
@@ -371,11 +381,12 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
     solution = operating_film(case, float(np.abs(orbit.speed).max()))
     force, mesh = SolvedFilmForce.of(case, solution), solution.problem.mesh
     temperature, hottest = _temperature(solution)
+    places, rates = orbit.film_motion
+    unknowns = pad_unknowns(case.bearing)[1]
     frames = []
     for row in _shown_samples(orbit):
-        motion = (orbit.x, orbit.y, orbit.vx, orbit.vy, orbit.speed)
         try:
-            state = force.film(*(float(values[row]) for values in motion))
+            state = force.film(places[row], rates[row], float(orbit.speed[row]))
         except ArithmeticError:
             continue
         frames.append(
@@ -391,6 +402,11 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
                 radial_clearance=case.bearing.radial_clearance,
                 centre=np.array([orbit.x[row], orbit.y[row]]),
                 time=float(orbit.t[row]),
+                bearing=case.bearing if unknowns else None,
+                tilts=tuple(float(places[row, own.tilt]) for own in unknowns),
+                pivots=tuple(
+                    0.0 if own.pivot is None else float(places[row, own.pivot]) for own in unknowns
+                ),
             )
         )
     return frames

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..machine.machine import Machine
 from ..machine.modes import modes
-from ..machine.support import ConstantSupport, TableSupport
+from ..machine.support import ConstantSupport, MatrixTable, Support, TableSupport
 from ..machine.thresholds import ThresholdSpeed, threshold_speeds
 from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..model import Case, LoadTarget, MeshSize
@@ -24,7 +24,6 @@ from .planes import changed, with_mesh
 from .sweep import model_digest, refuse_other_sources
 
 if TYPE_CHECKING:
-    from ..bearing.interpolation import CoefficientInterpolator
     from ..bearing.operating_point import OperatingPoint
     from ..files.scenario import Scenario
     from ..model.tolerances import ToleranceSettings
@@ -109,22 +108,28 @@ class _FilmThreshold:
 
     def _growth(self, point: OperatingPoint) -> float:
         """Largest real part of the eigenvalues [1/s]."""
-        film = ConstantSupport(point.stiffness, point.damping)
+        film = _support({point.speed: point})
         found = modes(Machine.on_identical(self.rotor, film), point.speed)
         return float(found.largest_growth_rate[0])
 
     def _thresholds(self, points: Mapping[float, OperatingPoint]) -> list[ThresholdSpeed]:
-        machine = Machine.on_identical(self.rotor, TableSupport(_interpolator(points)))
+        machine = Machine.on_identical(self.rotor, _support(points))
         return threshold_speeds(machine, subdivisions=1)
 
 
-def _interpolator(points: Mapping[float, OperatingPoint]) -> CoefficientInterpolator:
+def _support(points: Mapping[float, OperatingPoint]) -> Support:
+    """Film of one or more speeds, with its pads."""
     from ..bearing.interpolation import CoefficientInterpolator
 
     ordered = [points[speed] for speed in sorted(points)]
+    if ordered[0].pads:
+        return MatrixTable.of_points(ordered, [0.0] * len(ordered))
+    if len(ordered) == 1:
+        return ConstantSupport(ordered[0].stiffness, ordered[0].damping)
     columns = np.array([[*p.stiffness.ravel(), *p.damping.ravel(), p.load] for p in ordered])
     speeds = np.array(sorted(points))
-    return CoefficientInterpolator.from_columns(speeds, np.ones(speeds.size, dtype=bool), columns)
+    good = np.ones(speeds.size, dtype=bool)
+    return TableSupport(CoefficientInterpolator.from_columns(speeds, good, columns))
 
 
 @dataclass(frozen=True, eq=False)

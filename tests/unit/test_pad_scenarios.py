@@ -97,6 +97,9 @@ def test_feed_decides_what_is_carried_over():
         FIVE + 'feed = "spray_bar"\n', rest=heated + thermal + "hot_oil_carry_over = 0.7\n"
     )
     assert given.thermal.hot_oil_carry_over == 0.7
+    fed = scenario(FIVE + 'feed = "spray_bar"\nsupply_flow = "20 L/min"\n', rest=heated + thermal)
+    assert fed.thermal.hot_oil_carry_over == 1.0
+    assert fed.bearing.supply_flow == pytest.approx(20e-3 / 60.0)
 
 
 @pytest.mark.parametrize(
@@ -114,6 +117,8 @@ def test_feed_decides_what_is_carried_over():
         (FIVE + 'load = "on_pad"\npivot_angle = "0 deg"\n', "bearing.pads.load", "either"),
         (FIVE + "[[bearing.pad]]\npreload = 0.1\n", "bearing.pads.count", "leave it out"),
         (FIVE + "pads = 5\n", "bearing.pads.pads", "is not a key"),
+        (FIVE + 'supply_flow = "20 L/min"\nsupply_pressure = "20 kPa"\n',
+         "bearing.pads.supply_flow", "either"),
     ],
 )  # fmt: skip
 def test_bad_pads_are_refused_with_key_and_remedy(pads: str, key: str, words: str):

@@ -27,7 +27,7 @@ from ...model import (
 )
 from ...model.bearing import FULL_TURN
 from ...model.orbit import OrbitForce, OrbitKind, OrbitSettings, SpeedRamp
-from ...model.pad_bearing import CARRY_OVER, Feed, farthest
+from ...model.pad_bearing import CARRY_OVER, farthest
 from ...model.tolerances import NORMAL_REACH, Distribution
 from ...rotor import Rotor
 
@@ -73,9 +73,8 @@ def _settled_pads(scenario: Scenario, tables: _Tables) -> Scenario:
     if "inlet" not in heat:
         thermal = replace(thermal, inlet=InletModel.MIXING)
     if "hot_oil_carry_over" not in heat and thermal.inlet is InletModel.MIXING:
-        thermal = replace(
-            thermal, hot_oil_carry_over=CARRY_OVER[Feed(shared.get("feed", "flooded"))]
-        )
+        kept = 1.0 if bearing.supply_flow is not None else CARRY_OVER[bearing.feed]
+        thermal = replace(thermal, hot_oil_carry_over=kept)
     return replace(scenario, bearing=bearing, thermal=thermal)
 
 

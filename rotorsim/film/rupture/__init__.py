@@ -11,6 +11,7 @@ from .base import Factor, PressureSolution, RuptureCondition
 from .mass_conserving import MassConserving
 from .reynolds import Reynolds
 from .sommerfeld import FullSommerfeld, HalfSommerfeld
+from .starvation import OilSupply
 
 _CONDITIONS: dict[Cavitation, RuptureCondition] = {
     Cavitation.FULL_SOMMERFELD: FullSommerfeld(),
@@ -20,9 +21,11 @@ _CONDITIONS: dict[Cavitation, RuptureCondition] = {
 }
 
 
-def rupture_condition(name: Cavitation) -> RuptureCondition:
-    """Return the rupture condition of that name."""
+def rupture_condition(name: Cavitation, supply: OilSupply | None = None) -> RuptureCondition:
+    """Return the rupture condition of that name; under `supply` a film may begin starved."""
+    if name is Cavitation.JFO and supply is not None:
+        return MassConserving(supply)
     return _CONDITIONS[name]
 
 
-__all__ = ["Factor", "PressureSolution", "RuptureCondition", "rupture_condition"]
+__all__ = ["Factor", "OilSupply", "PressureSolution", "RuptureCondition", "rupture_condition"]

@@ -44,6 +44,8 @@ class PressureSolution:
         Liquid fraction, where the condition conserves mass.
     violations : int
         Cells that break the rupture condition because their state was given.
+    inlet : (g,) array or None
+        Liquid fraction on the leading edge behind each opening, where the supply is limited.
     """
 
     pressure: Array
@@ -54,6 +56,7 @@ class PressureSolution:
     converged: bool
     liquid: Array | None = None
     violations: int = 0
+    inlet: Array | None = None
 
 
 class RuptureCondition(Protocol):

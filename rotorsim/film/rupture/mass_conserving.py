@@ -21,6 +21,7 @@ from ..kernels import kernel
 from ..operator import FilmOperator
 from .base import Factor, PressureSolution, with_fixed
 from .reynolds import Reynolds
+from .starvation import OilSupply, StarvedFactor
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -33,7 +34,7 @@ _BAND_SOLVERS = {
 
 
 @dataclass(frozen=True)
-class _MixedFactor:
+class MixedFactor:
     """LU factors of the mixed system; `solve` gives pressures in full cells [Pa].
 
     In ruptured cells the solution is the liquid fraction (or its perturbation).
@@ -71,7 +72,7 @@ class _MixedFactor:
     def _solvers(self):
         return _BAND_SOLVERS[complex if np.iscomplexobj(self.matrix) else float]
 
-    def with_stored_oil(self, rate: NDArray[Any]) -> tuple[_MixedFactor, NDArray[Any]]:
+    def with_stored_oil(self, rate: NDArray[Any]) -> tuple[MixedFactor, NDArray[Any]]:
         """Factor the system of a motion exp(s t), in which the ruptured cells store oil.
 
         The liquid fraction crosses a ruptured cell in tau, its volume over the flow through it, so
@@ -117,11 +118,20 @@ class _MixedFactor:
         return result.reshape(np.shape(right))
 
 
+@dataclass(frozen=True)
 class MassConserving:
-    """The ruptured film carries on what oil left the full film, and re-forms where it is filled."""
+    """The ruptured film carries on what oil left the full film, and re-forms where it is filled.
 
-    conserves_mass: bool = True
-    conserves_oil: bool = True
+    Parameters
+    ----------
+    supply : OilSupply or None
+        None: openings are full.
+    """
+
+    supply: OilSupply | None = None
+
+    conserves_mass: bool = field(default=True, init=False)
+    conserves_oil: bool = field(default=True, init=False)
 
     def solve(
         self,
@@ -134,7 +144,7 @@ class MassConserving:
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve for pressure and liquid fraction; see `RuptureCondition.solve`."""
         del region
-        return _solve(operator, squeeze=squeeze, start=start, frozen=frozen)
+        return _solve(operator, self.supply, squeeze=squeeze, start=start, frozen=frozen)
 
     def squeezed_area(self, operator: FilmOperator, solution: PressureSolution) -> Array:
         """Return the area that oil fills [m2]: where the film is ruptured, only a part."""
@@ -145,17 +155,19 @@ class MassConserving:
         self, factor: Factor, rate: NDArray[Any]
     ) -> tuple[Factor, NDArray[Any] | None]:
         """Return the factor with the oil that the ruptured cells store and give back."""
-        assert isinstance(factor, _MixedFactor)
+        assert isinstance(factor, MixedFactor | StarvedFactor)
         return factor.with_stored_oil(rate)
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
         """Factor the mixed system of `operator` in the state of `solution`."""
-        factor, _ = _mixed_system(operator, solution.full, np.zeros(operator.area.shape))
+        shape = operator.area.shape
+        factor, _ = _mixed_system(operator, solution.full, np.zeros(shape), np.ones(shape[0]))
         return factor
 
 
 def _solve(
     operator: FilmOperator,
+    supply: OilSupply | None,
     *,
     squeeze: Array | None = None,
     start: Flags | None = None,
@@ -181,19 +193,31 @@ def _solve(
     rate = np.zeros(film.shape) if squeeze is None else squeeze
     seen: set[bytes] = set()
     damped, converged, steps = False, False, 0
+    fractions = np.ones(0 if supply is None else supply.flow.size)
+    starved = np.zeros(fractions.size, dtype=bool)
     while True:
-        factor, right = _mixed_system(operator, full, rate)
-        unknown = factor.solve(right)
+        filled = np.ones(film.shape[0]) if supply is None else supply.filled(starved)
+        factor, right = _mixed_system(operator, full, rate, filled)
+        changed = False
+        if supply is None:
+            unknown = factor.solve(right)
+        else:
+            factor, unknown, fractions = _supplied(supply, factor, right, operator, full, starved)
+            lacking = np.where(starved, fractions <= 1.0 + 1e-12, fractions < 1.0 - 1e-9)
+            changed = bool((lacking != starved).any())
+            starved = lacking
         steps += 1
         update = np.where(full, unknown > 0.0, unknown > 1.0 + 1e-12) & film
         violations = int((update != full).sum())
-        if violations == 0 or frozen is not None:
+        if (violations == 0 or frozen is not None) and not changed:
             converged = True
             break
         if steps >= _MAX_STEPS:
             break
+        if frozen is not None:
+            continue
         # A set seen before means a cycle: from then on only the worst cells change.
-        key = np.packbits(update).tobytes()
+        key = np.packbits(update).tobytes() + np.packbits(starved).tobytes()
         damped = damped or key in seen
         seen.add(key)
         full = _worst_changes(full, update, unknown) if damped else update
@@ -202,6 +226,10 @@ def _solve(
     liquid[operator.fixed] = 1.0
     pressure = with_fixed(operator, pressure)
     carried = _carried_fraction(operator, liquid)
+    if supply is not None:
+        fractions = np.minimum(fractions, 1.0)
+        entering = supply.carried(fractions)[:, None]
+        carried[0] = np.where(operator.interior[0], carried[0], entering)
     solution = PressureSolution(
         pressure=pressure,
         raw=pressure,
@@ -211,8 +239,31 @@ def _solve(
         converged=converged,
         liquid=liquid,
         violations=violations,
+        inlet=None if supply is None else fractions,
     )
     return replace(operator, couette=operator.couette * carried), solution
+
+
+def _supplied(
+    supply: OilSupply,
+    factor: MixedFactor,
+    right: Array,
+    operator: FilmOperator,
+    full: Flags,
+    starved: Flags,
+) -> tuple[MixedFactor | StarvedFactor, Array, Array]:
+    """Factor, unknowns, and the fraction that each opening could fill of its pad's leading edge."""
+    bordered: MixedFactor | StarvedFactor = factor
+    found = np.zeros(0)
+    if starved.any():
+        bordered = supply.bordered(factor, operator, full, starved)
+        unknown, found = bordered.at_rest(right)
+    else:
+        unknown = factor.solve(right)
+    demand, weights, rest = supply.balance(operator, full)
+    fractions = (supply.flow + rest + np.tensordot(weights, unknown, axes=2)) / demand
+    fractions[starved] = found
+    return bordered, unknown, fractions
 
 
 def _carried_fraction(operator: FilmOperator, liquid: Array) -> Array:
@@ -231,7 +282,10 @@ def _worst_changes(full: Flags, update: Flags, unknown: Array) -> Flags:
     return np.where(chosen, update, full)
 
 
-def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[_MixedFactor, Array]:
+def _mixed_system(
+    operator: FilmOperator, full: Flags, rate: Array, filled: Array
+) -> tuple[MixedFactor, Array]:
+    """Factor and right-hand side; `filled` (n,) is the fraction that enters at open first faces."""
     everything = np.ones_like(full)
     order, folded = column_order(operator.interior, everything)
     m = full.shape[1]
@@ -244,9 +298,10 @@ def _mixed_system(operator: FilmOperator, full: Flags, rate: Array) -> tuple[_Mi
     right = np.zeros(full.shape)
     _fill(
         operator.conductance, operator.interior, operator.fixed_pressure, operator.couette,
-        operator.fixed, full, rate * operator.area, order, position, width, scale, band, right,
+        operator.fixed, full, rate * operator.area, filled, order, position, width, scale, band,
+        right,
     )  # fmt: skip
-    return _MixedFactor(band, width, order, scale, full, ~operator.fixed), right
+    return MixedFactor(band, width, order, scale, full, ~operator.fixed), right
 
 
 @kernel
@@ -258,6 +313,7 @@ def _fill(
     fixed,
     full,
     rate,
+    filled,
     order,
     position,
     width,
@@ -304,7 +360,7 @@ def _fill(
                     row = position[after] * m + j
                     band[middle + row - column, column] -= couette[0, after, j]
             if not interior[0, i, j]:
-                right[i, j] += couette[0, i, j]
+                right[i, j] += couette[0, i, j] * filled[i]
             for face in range(4):
                 if not interior[face, i, j]:
                     right[i, j] += conductance[face, i, j] * (

@@ -23,6 +23,7 @@ from .orbits import (
     spectrum_cascade,
     spectrum_plot,
 )
+from .pads import pad_sections
 from .stability import campbell_diagram, eigenvalue_plot, root_locus, tolerance_histograms
 from .style import figure_bytes, save_figure
 
@@ -43,6 +44,7 @@ __all__ = [
     "mode_shape",
     "mode_shapes",
     "orbit_plot",
+    "pad_sections",
     "root_locus",
     "rotor_drawing",
     "save_figure",

@@ -112,6 +112,8 @@ def log_films(stream: rr.RecordingStream, films: Sequence[FilmFrame], runs: Sequ
         frames = frames_of(films, name)
         root = f"bearing/{name}"
         _log_bush(stream, root, frames[0])
+        if frames[0].bearing is not None:
+            _send_pads(stream, root, frames, runs)
         _log_journal(stream, root, frames, pick_run(runs, name))
         for quantity in scales:
             if shows(quantity, frames):
@@ -239,15 +241,16 @@ def _send_caption(
 
 
 def _log_bush(stream: rr.RecordingStream, root: str, film: FilmFrame) -> None:
-    """Write the bore's edges and the axes x and y."""
+    """Write the bore's edges, where there is one, and the axes x and y."""
     half = 0.5 * film.length * surfaces.MILLI
     bore = surfaces.bore_radius(film.journal_radius)
     rings = [surfaces.circle(bore, -half), surfaces.circle(bore, half)]
-    stream.log(
-        f"{root}/bush/bore_mm",
-        rr.LineStrips3D(rings, radii=rr.Radius.ui_points(1.0), colors=LINE),
-        static=True,
-    )
+    if film.bearing is None:
+        stream.log(
+            f"{root}/bush/bore_mm",
+            rr.LineStrips3D(rings, radii=rr.Radius.ui_points(1.0), colors=LINE),
+            static=True,
+        )
     reach = 1.75 * film.journal_radius * surfaces.MILLI
     stream.log(
         f"{root}/bush/axes",
@@ -261,6 +264,19 @@ def _log_bush(stream: rr.RecordingStream, root: str, film: FilmFrame) -> None:
         ),
         static=True,
     )
+
+
+def _send_pads(
+    stream: rr.RecordingStream, root: str, frames: Sequence[FilmFrame], runs: Sequence[Run]
+) -> None:
+    """Write the outlines of tilting pads, which move from frame to frame."""
+    entity, outlines = f"{root}/bush/pads_mm", [surfaces.pad_outlines(film) for film in frames]
+    looks = rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(1.2), colors=LINE)
+    stream.log(entity, looks, static=True)
+    for index, which in indices_of_frames(runs, frames):
+        lines = [line.astype(np.float32) for place in which for line in outlines[place]]
+        columns = rr.LineStrips3D.columns(strips=lines)
+        stream.send_columns(entity, index, columns.partition([len(outlines[0])] * len(which)))
 
 
 def _log_journal(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...film.geometry import pad_face
 from ...study.orbits import FilmFrame
 
 Array = NDArray[np.float64]
@@ -79,6 +80,40 @@ def bore_radius(journal_radius: float) -> float:
     return journal_radius * MILLI * (1.0 + DRAWN_CLEARANCE)
 
 
+def face_radius(film: FilmFrame, angle: Array) -> Array:
+    """Radius [mm], as drawn, of the wall around the film at `angle` [rad].
+
+    Of the bore; between pads of their faces as they stand, joined over the openings.
+    """
+    if film.bearing is None:
+        return np.full(angle.shape, bore_radius(film.journal_radius))
+    known, radii = [], []
+    for pad, tilt, pivot in zip(film.bearing.pads, film.tilts, film.pivots, strict=True):
+        inside = np.linspace(pad.leading_edge, pad.trailing_edge, 25)
+        known.append(inside)
+        radii.append(pad_face(film.bearing, pad, inside, tilt, pivot))
+    face = np.interp(angle, np.concatenate(known), np.concatenate(radii), period=2.0 * np.pi)
+    return MILLI * (film.journal_radius + exaggeration(film) * face)
+
+
+def pad_outlines(film: FilmFrame) -> list[Array]:
+    """Lines around each pad at both ends, and along its four edges [mm], as drawn."""
+    assert film.bearing is not None
+    half, lines = 0.5 * film.length * MILLI, []
+    for pad, tilt, pivot in zip(film.bearing.pads, film.tilts, film.pivots, strict=True):
+        angle = np.linspace(pad.leading_edge, pad.trailing_edge, 21)
+        face = exaggeration(film) * pad_face(film.bearing, pad, angle, tilt, pivot)
+        moved = face - exaggeration(film) * pad_face(film.bearing, pad, angle)
+        back = pad.thickness + DRAWN_CLEARANCE * film.journal_radius + moved
+        radius = film.journal_radius + np.concatenate([face, back[::-1], face[:1]])
+        around = np.concatenate([angle, angle[::-1], angle[:1]])
+        ring = MILLI * radius[:, None] * np.column_stack([np.cos(around), np.sin(around)])
+        ends = [np.column_stack([ring, np.full(len(ring), z)]) for z in (-half, half)]
+        edges = [0, angle.size - 1, angle.size, -2]
+        lines += [*ends, *(np.stack([end[place] for end in ends]) for place in edges)]
+    return lines
+
+
 def exaggeration(film: FilmFrame) -> float:
     """How many times larger than true the clearance is drawn."""
     return DRAWN_CLEARANCE * film.journal_radius / film.radial_clearance
@@ -93,7 +128,7 @@ def wrapped(film: FilmFrame, height: Array) -> Array:
         Radial displacement in journal radii.
     """
     angle, place = display_grid(film)
-    radius = bore_radius(film.journal_radius) + height * film.journal_radius * MILLI
+    radius = face_radius(film, angle)[:, None] + height * film.journal_radius * MILLI
     x = radius * np.cos(angle)[:, None]
     y = radius * np.sin(angle)[:, None]
     z = np.broadcast_to(place, x.shape)

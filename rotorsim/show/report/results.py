@@ -86,6 +86,8 @@ def margins(curves: Sequence[StabilityCurve]) -> str:
         head += ["verdict", "threshold rpm", "growth 1/s", "log. decrement"]
     if mass is not None:
         head.append("mass margin")
+    if any(curve.growth_rate_synchronous is not None for curve in curves):
+        head += ["synchronous: growth 1/s", "threshold rpm"]
     rows = [_margin_row(curve) for curve in curves]
     caption = f"At {top:.0f} rpm"
     if rotor:
@@ -112,6 +114,11 @@ def _margin_row(curve: StabilityCurve) -> list[str]:
     if curve.mass is not None:
         part = 100.0 * (1.0 - curve.mass / critical)
         row.append(f"{part:.1f} %" if math.isfinite(part) else "-")
+    if curve.growth_rate_synchronous is not None:
+        row += [
+            number(float(curve.growth_rate_synchronous[-1])),
+            ", ".join(f"{one * RPM:.0f}" for one in curve.threshold_speeds_synchronous) or "none",
+        ]
     return row
 
 
