@@ -14,7 +14,7 @@ from rotorsim.machine.modes import modes
 from rotorsim.machine.support import MatrixTable
 from rotorsim.model import LoadTarget, SpringPivot
 from rotorsim.rotor import Rotor
-from rotorsim.study.tolerances import FilmThreshold
+from rotorsim.study.tolerances import _FilmThreshold
 
 SPEEDS = (600.0, 900.0, 1200.0)
 
@@ -72,7 +72,7 @@ def test_a_clearance_between_the_tabulated_ones_keeps_the_pads(table):
 
 def test_tolerances_ask_the_pads_as_well():
     one = case()
-    rates = FilmThreshold(one, Rotor.rigid(400.0), 900.0, (600.0, 1200.0))({"load": 3000.0})
+    rates = _FilmThreshold(one, Rotor.rigid(400.0), 900.0, (600.0, 1200.0))({"load": 3000.0})
     point, _ = solve_case(one, 900.0)
     support = MatrixTable.of_points([point], [0.0])
     full = modes(Machine.on_identical(Rotor.rigid(400.0), support), 900.0)
