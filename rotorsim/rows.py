@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from typing import Any, NamedTuple
 
@@ -95,13 +95,14 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 
 
 @dataclass(frozen=True)
-class _Quantity:
+class Quantity:
     """How a quantity is shown.
 
     label, symbol : In words, and short for the head of a column.
     base : Unit where nothing else is asked for; `unit` is the one shown.
     to_base, base_zero : Factor and offset from SI to `base`.
     digits : In tables.
+    owner : Whose it is, of a machine's parameter.
     """
 
     label: str
@@ -110,6 +111,7 @@ class _Quantity:
     to_base: float = 1.0
     base_zero: float = 0.0
     digits: int = 4
+    owner: str = ""
 
     @property
     def unit(self) -> str:
@@ -130,7 +132,7 @@ class _Quantity:
     @property
     def head(self) -> str:
         """Head of a column: symbol and unit."""
-        return f"{self.symbol} {self.unit}".strip()
+        return f"{self.owner} {self.symbol} {self.unit}".strip()
 
     @property
     def axis(self) -> str:
@@ -152,44 +154,66 @@ class _Quantity:
 
     def said(self, value: float | None) -> str:
         """Write an SI value with its unit: ``c = 100 µm``."""
-        name = f"{self.symbol} = " if len(self.symbol) == 1 else ""
-        return f"{name}{self.text(value, 4)} {self.unit}".strip()
+        name = f"{self.symbol} = " if len(self.symbol) == 1 or self.owner else ""
+        return f"{self.owner} {name}{self.text(value, 4)} {self.unit}".strip()
 
 
 QUANTITIES = {
-    "speed": _Quantity("shaft speed", "", "rpm", RPM),
-    "radial_clearance": _Quantity("radial clearance", "c", "µm", 1e6),
-    "applied_load": _Quantity("load per bearing", "", "kN", 1e-3),
-    "supply_temperature": _Quantity("supply temperature", "T_in", "°C", 1.0, -ZERO_CELSIUS),
-    "mass": _Quantity("rotor mass per bearing", "", "kg"),
-    "eccentricity_ratio": _Quantity("eccentricity ratio", "ε", digits=3),
-    "attitude_angle": _Quantity("attitude angle", "φ", "°", 180.0 / math.pi, digits=3),
-    "load": _Quantity("load", "load", "kN", 1e-3),
-    "sommerfeld_number": _Quantity("Sommerfeld number", "S"),
-    "min_film_thickness": _Quantity("minimum film thickness", "h_min", "µm", 1e6, digits=3),
-    "max_pressure": _Quantity("maximum pressure", "p_max", "MPa", 1e-6, digits=3),
-    "max_temperature": _Quantity(
-        "maximum temperature", "T_max", "°C", 1.0, -ZERO_CELSIUS, digits=3
-    ),
-    "mean_temperature": _Quantity("mean temperature", "T_mean", "°C", 1.0, -ZERO_CELSIUS, digits=3),
-    "shaft_temperature": _Quantity(
+    "speed": Quantity("shaft speed", "", "rpm", RPM),
+    "radial_clearance": Quantity("radial clearance", "c", "µm", 1e6),
+    "applied_load": Quantity("load per bearing", "", "kN", 1e-3),
+    "supply_temperature": Quantity("supply temperature", "T_in", "°C", 1.0, -ZERO_CELSIUS),
+    "mass": Quantity("rotor mass per bearing", "", "kg"),
+    "eccentricity_ratio": Quantity("eccentricity ratio", "ε", digits=3),
+    "attitude_angle": Quantity("attitude angle", "φ", "°", 180.0 / math.pi, digits=3),
+    "load": Quantity("load", "load", "kN", 1e-3),
+    "sommerfeld_number": Quantity("Sommerfeld number", "S"),
+    "min_film_thickness": Quantity("minimum film thickness", "h_min", "µm", 1e6, digits=3),
+    "max_pressure": Quantity("maximum pressure", "p_max", "MPa", 1e-6, digits=3),
+    "max_temperature": Quantity("maximum temperature", "T_max", "°C", 1.0, -ZERO_CELSIUS, digits=3),
+    "mean_temperature": Quantity("mean temperature", "T_mean", "°C", 1.0, -ZERO_CELSIUS, digits=3),
+    "shaft_temperature": Quantity(
         "shaft temperature", "T_shaft", "°C", 1.0, -ZERO_CELSIUS, digits=3
     ),
-    "outlet_temperature": _Quantity(
+    "outlet_temperature": Quantity(
         "oil outlet temperature", "T_out", "°C", 1.0, -ZERO_CELSIUS, digits=3
     ),
-    "friction_force": _Quantity("friction force", "friction", "N"),
-    "power_loss": _Quantity("power loss", "loss", "kW", 1e-3),
-    "side_flow": _Quantity("side flow", "side flow", "L/min", 6e4),
-    "wall_heat_share": _Quantity("heat through the walls", "to walls", "%", 100.0),
-    "heat_imbalance": _Quantity("heat imbalance", "imbalance", "%", 100.0, digits=2),
-    "critical_mass": _Quantity("critical mass per bearing", "M_crit", "kg"),
-    "critical_mass_dimensionless": _Quantity("dimensionless critical mass", "M c ω²/W"),
-    "whirl_frequency_ratio": _Quantity("whirl frequency ratio", "whirl ratio", digits=3),
-    "growth_rate": _Quantity("growth rate", "growth", "1/s"),
-    "threshold_speed": _Quantity("threshold speed", "threshold", "rpm", RPM),
+    "friction_force": Quantity("friction force", "friction", "N"),
+    "power_loss": Quantity("power loss", "loss", "kW", 1e-3),
+    "side_flow": Quantity("side flow", "side flow", "L/min", 6e4),
+    "wall_heat_share": Quantity("heat through the walls", "to walls", "%", 100.0),
+    "heat_imbalance": Quantity("heat imbalance", "imbalance", "%", 100.0, digits=2),
+    "critical_mass": Quantity("critical mass per bearing", "M_crit", "kg"),
+    "critical_mass_dimensionless": Quantity("dimensionless critical mass", "M c ω²/W"),
+    "whirl_frequency_ratio": Quantity("whirl frequency ratio", "whirl ratio", digits=3),
+    "growth_rate": Quantity("growth rate", "growth", "1/s"),
+    "threshold_speed": Quantity("threshold speed", "threshold", "rpm", RPM),
+    "viscosity": Quantity("viscosity", "viscosity", "times"),
+    "elevation": Quantity("elevation", "elevation", "µm", 1e6),
+    "stiffness": Quantity("stiffness", "k", "MN/m", 1e-6),
+    "damping": Quantity("damping", "damping", "kN s/m", 1e-3),
+    "pedestal_stiffness": Quantity("pedestal's stiffness", "pedestal", "MN/m", 1e-6),
+    "pedestal_damping": Quantity("pedestal's damping", "pedestal", "kN s/m", 1e-3),
+    "pedestal_mass": Quantity("pedestal's mass", "pedestal", "kg"),
+    "destabilising_stiffness": Quantity("destabilising stiffness", "Q", "MN/m", 1e-6),
+    "internal_damping": Quantity("internal damping", "internal damping", "µs", 1e6),
+    "axial_force": Quantity("axial force", "axial force", "kN", 1e-3),
+    "youngs_modulus": Quantity("Young's modulus", "E", "GPa", 1e-9),
 }
 """By the name of the attribute, JSON key or table variable (SI)."""
+
+
+def quantity(name: str) -> Quantity:
+    """How a quantity is shown, by its name; of a machine's parameter ``left.load`` with its owner.
+
+    Examples
+    --------
+    >>> quantity("left.radial_clearance").said(1e-4), quantity("speed").said(100.0)
+    ('left c = 100 µm', '955 rpm')
+    """
+    owner, _, word = name.rpartition(".")
+    found = QUANTITIES[word]
+    return replace(found, label=f"{found.label}, {owner}", owner=owner) if owner else found
 
 
 class Row(NamedTuple):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -15,6 +16,7 @@ from .options import (
     ModelOption,
     ScenarioArgument,
     SpeedOption,
+    WorkersOption,
     option,
     positive,
     wanted_clearance,
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model import Case
     from ..study.control import ControlStudy
+    from ..study.machine_control import MachineControlStudy
 
 
 class _DesignChoice(StrEnum):
@@ -42,8 +45,26 @@ def control(
     clearance: ClearanceOption = None,
     model: ModelOption = None,
     design: Annotated[
-        _DesignChoice, typer.Option("--design", help="Full state feedback, or PD for each axis.")
-    ] = _DesignChoice.LQR,
+        _DesignChoice | None,
+        typer.Option(
+            "--design", help="Full state feedback, or PD for each axis.",
+            show_default="lqr, or the machine's",
+        ),
+    ] = None,
+    actuator: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--actuator", metavar="PLACE", show_default="the file's",
+            help='Of a machine: "250 mm" from the left end, or a name in it; may be repeated.',
+        ),
+    ] = None,
+    sensor: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--sensor", metavar="PLACE", show_default="the file's, or at the actuators",
+            help="Of a machine: likewise.",
+        ),
+    ] = None,
     max_force: Annotated[
         str | None,
         option("--max-force", "FORCE", 'Where each axis saturates, e.g. "2 kN".', "never"),
@@ -59,13 +80,39 @@ def control(
                "20 where the film is solved at every step, else 100", min=0, max=100_000),
     ] = None,
     folder: FolderOption = None,
+    workers: WorkersOption = None,
 ) -> int:  # fmt: skip
     """Design a magnetic actuator's feedback, and try it in time on the nonlinear film.
 
     Example: rotorsim control scenarios/quick.toml --speed "15000 rpm" --max-force "2 kN"
 
     A table of coefficients has no film to try it on: design on it from Python (design_lqr).
+
+    On a machine, its films linear, with actuators and sensors anywhere on the shaft:
+    rotorsim control scenarios/machines/plain_rotor.toml --actuator "250 mm" --sensor "400 mm"
     """
+    from .machine_commands import is_machine
+
+    if is_machine(scenario):
+        for key, text in (("--mass", mass), ("--clearance", clearance)):
+            if text is not None:
+                raise InputError(f"is that of the machine file {scenario}", key=key, value=text)
+        wishes = {
+            "design": None if design is None else design.value,
+            "max_force": positive(max_force, "force", "--max-force", "2 kN"),
+            "speed": positive(speed, "speed", "--speed", "15000 rpm"),
+            "actuator": tuple(actuator) if actuator else None,
+            "sensor": tuple(sensor) if sensor else None,
+        }
+        run = {
+            "disturbance": positive(disturbance, "length", "--disturbance", "2 um"),
+            "revolutions": revolutions,
+        }
+        return _machine_control(output, scenario, model, wishes, run, folder, workers)
+    for key, places in (("--actuator", actuator), ("--sensor", sensor)):
+        if places:
+            raise InputError("goes with a machine: here it acts on the journal", key=key)
+    design = design or _DesignChoice.LQR
     from ..files.scenario import load_scenario
     from ..study.control import ControlWishes, Design, study_control
 
@@ -93,6 +140,138 @@ def control(
     run = document["controlled"]
     output.warn(f"the actuator does not hold the rotor: {run['status']}, {run['message']}")
     return INCOMPLETE
+
+
+def _machine_control(
+    output: Output, path: Path, model: str | None, wishes: dict[str, Any], run: dict[str, Any],
+    folder: Path | None, workers: int | None,
+) -> int:  # fmt: skip
+    """Control of a machine: design, run on the whole linear machine, figures."""
+    import dataclasses
+
+    from ..files.machine import load_machine
+    from ..model.machine import MachineControl
+    from ..model.orbit import Design
+    from ..rows import RPM
+    from ..study.machine_control import study_machine_control
+    from .machine_commands import analysed
+
+    loaded = load_machine(path)
+    wishes = {key: value for key, value in wishes.items() if value is not None}
+    if "design" in wishes:
+        wishes["design"] = Design(wishes["design"])
+    if loaded.control is None and "actuator" not in wishes:
+        raise InputError(
+            'says not where: --actuator "250 mm", or [control] actuator = ["250 mm"] in the file',
+            key="--actuator",
+        )
+    settings = dataclasses.replace(loaded.control or MachineControl(()), **wishes)
+    loaded = loaded.with_parts(control=settings)
+    loaded.check_files()
+    speed = settings.speed or max(loaded.operating.speeds)
+    operating = dataclasses.replace(loaded.operating, speed=(speed,))
+    names = None if model is None else [model]
+    results = analysed(output, loaded.with_parts(operating=operating), workers, names)
+    result = results[next(reversed(results))]
+    run = {key: value for key, value in run.items() if value is not None}
+    study = study_machine_control(loaded, result.machine, settings, **run)
+    document = _machine_document(study, result.thermal_model)
+    if folder is not None:
+        from ..show.job import machine_control_figures, save_figures
+
+        document["files"] = save_figures(machine_control_figures(study, loaded.title), folder)
+    output.document(document)
+    if not (output.json or output.quiet):
+        output.show(*_machine_tables(study))
+        output.show(*map(str, document.get("files", [])))
+    if not result.converged:
+        output.warn("a film or the static equilibrium did not converge")
+    elif study.holds:
+        return DONE
+    growth = float(study.controlled_eigenvalues[0].real)
+    if growth >= 0.0:
+        output.warn(f"the whole machine stays unstable: growth rate {growth:.4g} 1/s")
+    elif not study.holds:
+        output.warn(
+            f"stable in the small, but its run at {speed * RPM:.0f} rpm does not come to rest"
+            + ": the actuators saturate" * study.saturates
+        )
+    return INCOMPLETE
+
+
+def _machine_document(study: MachineControlStudy, model: str) -> dict[str, Any]:
+    """Control of a machine for JSON."""
+    reduction, feedback = study.reduction, study.feedback
+
+    def motion(run: Any, values: Any) -> dict[str, Any]:
+        sizes = (None, None) if run is None else (float(run.size.max()), float(run.size[-1]))
+        return {
+            "eigenvalues": values[:12],
+            "growth_rate": float(values[0].real),
+            "largest_displacement": sizes[0],
+            "final_displacement": sizes[1],
+        }
+
+    return {
+        "speed": study.speed,
+        "thermal_model": model,
+        "design": study.design.value,
+        "actuators": study.actuators,
+        "sensors": study.sensors,
+        "states": study.system.nstates,
+        "reduced": {
+            "states": reduction.system.nstates,
+            "kept_exactly": reduction.kept_exactly,
+            "largest_gain": reduction.scale,
+            "error_bound": reduction.bound,
+            "error_found": reduction.error,
+            "hankel_singular_values": reduction.hankel[:40],
+        },
+        "feedback": {name: getattr(feedback, name) for name in ("a", "b", "c", "d", "w")},
+        "max_force": feedback.max_force,
+        "largest_force": study.largest_force,
+        "saturates": study.saturates,
+        "modulus_margin": study.margin,
+        "disturbance": study.disturbance,
+        "passive": motion(study.passive, study.passive_eigenvalues),
+        "controlled": motion(study.controlled, study.controlled_eigenvalues),
+        "holds": study.holds,
+    }
+
+
+def _machine_tables(study: MachineControlStudy) -> list[Any]:
+    """Control of a machine for people."""
+    from ..rows import RPM, number
+    from .tables import grid
+
+    said = _machine_document(study, "")
+    title = f"{study.speed * RPM:.0f} rpm, {study.design.name}"
+    table = grid(title, "", "growth 1/s", "whirl Hz", "largest µm", "at the end µm")
+    for name, values in (
+        ("passive", study.passive_eigenvalues), ("controlled", study.controlled_eigenvalues),
+    ):  # fmt: skip
+        row = said[name]
+        lengths = (row["largest_displacement"], row["final_displacement"])
+        table.add_row(
+            name, number(row["growth_rate"]), number(abs(values[0].imag) / 6.283185307179586),
+            *(number(None if one is None else one * 1e6) for one in lengths),
+        )  # fmt: skip
+    reduction = study.reduction
+    facts = grid("Design", "", "")
+    for label, places in (("actuators at", study.actuators), ("sensors at", study.sensors)):
+        facts.add_row(label, ", ".join(f"{number(at * 1e3)} mm" for at in places))
+    facts.add_row("states", f"{study.system.nstates}, reduced to {reduction.system.nstates}")
+    facts.add_row("kept exactly", f"{reduction.kept_exactly} states that do not decay")
+    facts.add_row(
+        "error of the reduction",
+        f"{number(100 * reduction.error / reduction.scale, 2)} % of the largest gain, "
+        f"bound {number(100 * reduction.bound / reduction.scale, 2)} %",
+    )
+    facts.add_row("modulus margin", number(study.margin, 3))
+    if study.largest_force is not None:
+        of = ", saturates" if study.saturates else ""
+        facts.add_row("largest force", f"{number(study.largest_force)} N{of}")
+    return [table, facts]
 
 
 def _mass(scenario: Scenario, text: str | None) -> float:

@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import InputError
 from ..rows import RPM, ZERO_CELSIUS, number
 from .output import DONE, INCOMPLETE, Output, film_progress
 from .tables import grid
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Sequence
 
     from rich.table import Table
 
+    from ..files.machine import MachineFile
     from ..study.lateral import LateralStudy
     from ..study.machine import MachineResult
 
@@ -71,16 +71,8 @@ def _kind(entry: Any) -> str:
     return f"{given}{' on a pedestal' if entry.pedestal else ''}" if given else "constants"
 
 
-def machine_stability(
-    output: Output, path: Path, own: Mapping[str, Any], workers: int | None
-) -> int:
-    """Show modes, critical speeds, thresholds and verdict of a machine.
-
-    Raises InputError: One of the options `own`, which describe a rotor, is given.
-    """
-    for key, value in own.items():
-        if value is not None:
-            raise InputError(f"the rotor is that of the machine file {path}", key=key)
+def machine_stability(output: Output, path: Path, workers: int | None) -> int:
+    """Show modes, critical speeds, thresholds and verdict of a machine."""
     from ..study.machine import stability_document
 
     results = _analysed(output, path, workers)
@@ -147,14 +139,21 @@ def _shown(value: float | None, unit: str) -> str:
 
 def _analysed(output: Output, path: Path, workers: int | None) -> dict[str, MachineResult]:
     from ..files.machine import load_machine
-    from ..study.machine import analyse_machine
 
-    loaded = load_machine(path)
-    models = {str(m) for one in loaded.bearings.values() for m in one.thermal_models}
+    return analysed(output, load_machine(path), workers)
+
+
+def analysed(
+    output: Output, loaded: MachineFile, workers: int | None, models: Sequence[str] | None = None
+) -> dict[str, MachineResult]:
+    """Machine solved with some of its thermal models, with progress."""
+    from ..study.machine import analyse_machine, thermal_models
+
+    models = models or thermal_models(loaded)
     total = len(models) * len(loaded.bearings) * len(loaded.operating.speeds)
     output.note(f"{loaded.title}: {total} film points" if total else loaded.title)
     with film_progress(output, total) as progress:
-        return analyse_machine(loaded, workers=workers, progress=progress)
+        return analyse_machine(loaded, models, workers=workers, progress=progress)
 
 
 def _stability_tables(results: dict[str, MachineResult]) -> Iterator[Table]:

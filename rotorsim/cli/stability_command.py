@@ -33,7 +33,7 @@ from .options import (
 from .output import DONE, INCOMPLETE, Output
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from ..model.tolerances import ToleranceSettings
     from ..rotor import Rotor
     from ..study.planes import Plane
+    from ..study.tolerances import ToleranceStudy
 
 
 _MAP, _TOLERANCES = "Map over two inputs", "Tolerances"
@@ -84,7 +85,7 @@ def _held(axis: _Axis, default: str = OWN) -> Any:
 
 
 def _axis(letter: str) -> Any:
-    text = f"Map: {letter} axis, one of {', '.join(_Axis)}."
+    text = f"Map: {letter} axis, one of {', '.join(_Axis)}; of a machine left.clearance, say."
     return option(f"--{letter}", "INPUT", text, panel=_MAP)
 
 
@@ -146,10 +147,17 @@ _Load = Annotated[str | None, _held(_Axis.LOAD)]
 _Clearance = Annotated[str | None, _held(_Axis.CLEARANCE)]
 _Supply = Annotated[str | None, _held(_Axis.SUPPLY_TEMPERATURE)]
 _Cells = Annotated[
-    int,
+    int | None,
     option(
-        "--cells", "N", "Of the map along each axis; 0: the values given.", True, _MAP,
-        min=0, max=5000,
+        "--cells", "N", "Of the map along each axis; 0: the values given.",
+        "101, of a machine 25", _MAP, min=0, max=5000,
+    ),
+]  # fmt: skip
+_Hold = Annotated[
+    list[str] | None,
+    option(
+        "--hold", "NAME=VALUE",
+        'Of a machine: hold a parameter, e.g. "left.load=5 kN"; may be repeated.', OWN, _MAP,
     ),
 ]  # fmt: skip
 _MeshOption = Annotated[
@@ -201,7 +209,7 @@ def stability(
     load: _Load = None,
     clearance: _Clearance = None,
     supply_temperature: _Supply = None,
-    cells: _Cells = 101,
+    cells: _Cells = None,
     tolerances: _Tolerances = False,
     tolerance: _Tolerance = None,
     samples: _Samples = None,
@@ -209,6 +217,7 @@ def stability(
     model: ModelOption = None,
     bearing: BearingOption = None,
     speeds: _Speeds = None,
+    hold: _Hold = None,
     folder: FolderOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
@@ -222,12 +231,38 @@ def stability(
 
     With --tolerances or --tolerance: what tolerances do to the threshold.
     rotorsim stability scenarios/elliptical.toml --tolerance "radial_clearance=5 um"
+
+    Both of a machine, over any of its parameters:
+    rotorsim stability scenarios/machines/plain_rotor.toml --x speed --y left.clearance
     """
     from .machine_commands import is_machine, machine_stability
 
     if is_machine(source):
-        own = {"--mass": mass, "--rotor": rotor, "--shaft-stiffness": shaft_stiffness}
-        return machine_stability(output, source, own, workers)
+        for key, value in {
+            "--mass": mass, "--rotor": rotor, "--shaft-stiffness": shaft_stiffness,
+            "--bearing-nodes": bearing_nodes, "--dofs-per-node": dofs_per_node,
+        }.items():  # fmt: skip
+            if value is not None:
+                raise InputError(f"the rotor is that of the machine file {source}", key=key)
+        for key, value in {
+            "--load": load, "--clearance": clearance, "--supply-temperature": supply_temperature,
+            "--bearing": bearing, "--speeds": speeds,
+        }.items():  # fmt: skip
+            if value is not None:
+                raise InputError(
+                    'of a machine say whose: --hold "left.clearance=80 um"', key=key, value=value
+                )
+        work = _Work(output, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
+        asked = [*(hold or ()), *([] if speed is None else [f"speed={speed}"])]
+        if x is not None or y is not None:
+            return _show_machine_map(work, source, {"x": (x, x_values), "y": (y, y_values)}, asked)
+        if tolerances or tolerance or samples:
+            return _show_machine_tolerances(work, source, asked, tolerance, samples)
+        if asked or x_values or y_values or mesh is not _Mesh.SCENARIO:
+            raise InputError("goes with a map (--x, --y) or with --tolerances", key="--hold")
+        return machine_stability(output, source, workers)
+    if hold:
+        raise InputError("goes with a machine", key="--hold", value=hold[0])
     given = positive(mass, "mass", "--mass", "1200 kg")
     held = _held_values(
         {_Axis.SPEED: speed, _Axis.LOAD: load, _Axis.CLEARANCE: clearance,
@@ -258,8 +293,8 @@ class _Work:
     """What the three analyses share."""
 
     def __init__(
-        self, output: Output, model: str | None, mesh: _Mesh, cells: int, folder: Path | None,
-        workers: int | None, scheduler: str | None, bearing: str | None, speeds: str | None,
+        self, output: Output, model: str | None, mesh: _Mesh, cells: int | None,
+        folder: Path | None, workers: int | None, scheduler: str | None, bearing: str | None, speeds: str | None,
     ) -> None:  # fmt: skip
         self.output, self.model, self.cells, self.folder = output, model, cells, folder
         self.workers, self.scheduler, self.mesh = workers, scheduler, mesh
@@ -323,10 +358,17 @@ def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[flo
 def _show_map(
     work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
 ) -> int:
+    return _shown_plane(work, *_plane(work, source, axes, held))
+
+
+def _cells(work: _Work) -> int:
+    return 101 if work.cells is None else work.cells
+
+
+def _shown_plane(work: _Work, plane: Plane, title: str) -> int:
     from ..show.job import plane_figures
     from .stability_results import plane_document, plane_table
 
-    plane, title = _plane(work, source, axes, held)
     document = {"map": plane_document(plane), "points": plane.solved_points}
     if work.folder is not None:
         from ..bearing.netcdf import write
@@ -354,7 +396,7 @@ def _plane(
         rotor = None if own is None else own.rotor
         if "mass" not in fixed and "mass" not in axes and rotor and rotor.rigid_mass:
             fixed["mass"] = [rotor.rigid_mass]
-        plane = plane_of_table(table, x, y, fixed, held, cells=work.cells)
+        plane = plane_of_table(table, x, y, fixed, held, cells=_cells(work))
         return plane, str(table.dataset.attrs.get("title", source.stem))
     scenario = load_scenario(source)
     with (
@@ -364,9 +406,78 @@ def _plane(
         plane = plane_of_scenario(
             scenario, x, y, values, held,
             thermal_models=None if work.model is None else [work.model], mesh=work.mesh_size,
-            cells=work.cells, executor=executor, workers=work.workers, progress=progress,
+            cells=_cells(work), executor=executor, workers=work.workers, progress=progress,
         )  # fmt: skip
     return plane, scenario.title
+
+
+def _named_texts(texts: Sequence[str] | None, key: str) -> dict[str, str]:
+    """``NAME=VALUE`` by name."""
+    found = {}
+    for text in texts or ():
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not sign or not name or not value:
+            raise InputError("must be NAME=VALUE", key=key, value=text)
+        found[name] = value
+    return found
+
+
+def _show_machine_map(
+    work: _Work, source: Path, texts: dict[str, tuple[str | None, str | None]], hold: list[str]
+) -> int:
+    from ..files.machine import load_machine
+    from ..study.machine_map import map_of_machine
+    from .progress import film_progress
+
+    machine = load_machine(source)
+    for key, (name, _) in texts.items():
+        if name is None:
+            raise InputError("a map needs both --x and --y", key=f"--{key}")
+    options: dict[str, Any] = {} if work.cells is None else {"cells": work.cells}
+    with film_progress(work.output, len(machine.operating.speeds)) as progress:
+        plane = map_of_machine(
+            machine, str(texts["x"][0]), str(texts["y"][0]),
+            {key: values for key, (_, values) in texts.items()}, _named_texts(hold, "--hold"),
+            models=None if work.model is None else [work.model], mesh=work.mesh_size,
+            workers=work.workers, progress=progress, **options,
+        )  # fmt: skip
+    return _shown_plane(work, plane, machine.title)
+
+
+def _show_machine_tolerances(
+    work: _Work, source: Path, hold: list[str], texts: list[str] | None, samples: int | None
+) -> int:
+    from dataclasses import replace
+
+    from ..files.machine import load_machine
+    from ..files.parameters import held_values
+    from ..model.machine import MachineTolerances
+    from ..study.tolerances import study_machine_tolerances
+
+    machine = load_machine(source)
+    held = held_values(machine, _named_texts(hold, "--hold"), "--hold")
+    speeds = [value for one, value in held.items() if one.kind == "speed"]
+    if len(held) > len(speeds):
+        raise InputError("goes with a map; set it in the file", key="--hold", value=hold[0])
+    own, given = machine.tolerances, _named_texts(texts, "--tolerance")
+    spread = {**(own.spread if own else {}), **given}
+    if not spread:
+        raise InputError(
+            'needs tolerances: --tolerance "left.clearance=5 um", or [tolerances] in the file',
+            key="--tolerances",
+        )
+    settings = replace(own or MachineTolerances(spread), spread=spread)
+    settings = replace(settings, samples=samples or settings.samples)
+    with (
+        cluster(work.scheduler, work.output) as executor,
+        _sample_progress(work.output) as progress,
+    ):
+        study = study_machine_tolerances(
+            machine, settings, operating_speed=speeds[0] if speeds else None,
+            thermal_model=work.model, mesh=work.mesh_size, executor=executor,
+            workers=None if executor is not None else work.workers, progress=progress,
+        )  # fmt: skip
+    return _shown_study(work, study, machine.title)
 
 
 def _film_count(scenario: Scenario, axes: dict[str, list[float] | None]) -> int:
@@ -382,9 +493,7 @@ def _show_tolerances(
     texts: list[str] | None,
     samples: int | None,
 ) -> int:
-    from ..show.job import tolerance_figures
     from ..study.tolerances import study_tolerances
-    from .stability_results import study_document, study_tables
 
     scenario, _ = _source(work, source)
     if scenario is None:
@@ -411,7 +520,14 @@ def _show_tolerances(
             workers=None if executor is not None else work.workers,
             progress=progress,
         )
-    figures = tolerance_figures(study, scenario.title)
+    return _shown_study(work, study, scenario.title)
+
+
+def _shown_study(work: _Work, study: ToleranceStudy, title: str) -> int:
+    from ..show.stability_figures import tolerance_figures
+    from .stability_results import study_document, study_tables
+
+    figures = tolerance_figures(study, title)
     work.finish(study_document(study), figures, lambda: study_tables(study))
     failed = study.samples.failures
     if failed:

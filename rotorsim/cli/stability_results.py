@@ -108,7 +108,8 @@ def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell])
 
 def plane_document(plane: Plane) -> dict[str, Any]:
     """A map for JSON."""
-    names = ("mass_margin", "critical_mass", "whirl_frequency_ratio")
+    names = ("mass_margin", "critical_mass", "whirl_frequency_ratio", "damped_frequency")
+    error = plane.dataset["growth_rate"].attrs.get("interpolation_error")
     models = {
         model: {
             "growth_rate": plane.growth(model),
@@ -116,18 +117,21 @@ def plane_document(plane: Plane) -> dict[str, Any]:
             **{
                 name: plane.values(name, model)
                 for name in names
-                if {plane.x, plane.y} <= set(plane.dataset[name].dims)
+                if name in plane.dataset and {plane.x, plane.y} <= set(plane.dataset[name].dims)
             },
         }
         for model in plane.models
     }
     return {
-        "x": plane.x,
-        "y": plane.y,
+        "x": plane.names[0],
+        "y": plane.names[1],
         "x_values": plane.dataset[plane.x].values,
         "y_values": plane.dataset[plane.y].values,
         "held": dict(plane.held),
-        "verdicts": {"stable": 1, "unstable": 0, "unknown": -1},
+        "verdicts": {"stable": 1, "unstable": 0, "unknown": -1, "undamped": 2},
+        "interpolation_error": None
+        if error is None
+        else dict(zip(plane.models, error, strict=True)),
         "models": models,
         "destabilised_by_heating": plane.destabilised_by_heating,
     }
@@ -137,7 +141,7 @@ def plane_table(plane: Plane) -> list[RenderableType]:
     """How much of the map is stable, and its border at some places."""
     from ..study.planes import held_text
 
-    head = f"Stability over {_name(plane.x)} and {_name(plane.y)}"
+    head = f"Stability over {_name(plane.names[0])} and {_name(plane.names[1])}"
     held = held_text(plane.held)
     table = grid(head, "model", "stable", "unstable", "unknown")
     for model in plane.models:
@@ -149,21 +153,32 @@ def plane_table(plane: Plane) -> list[RenderableType]:
         table.add_row(
             "made unstable by heating alone", "", f"{100.0 * float(heated.mean()):.1f} %", ""
         )
-    return [table, *([f"held: {held}"] if held else []), _border_table(plane)]
+    lines = [f"held: {held}"] if held else []
+    errors = plane.dataset["growth_rate"].attrs.get("interpolation_error")
+    if errors is not None and np.isfinite(errors).any():
+        said = ", ".join(
+            f"{number(e, 2)} 1/s ({m})" for m, e in zip(plane.models, errors, strict=True)
+        )
+        lines.append(
+            f"coefficients between solved films are interpolated; without every second film the "
+            f"growth rate changes by at most {said}"
+        )
+    return [table, *lines, _border_table(plane)]
 
 
 def _name(dimension: str) -> str:
-    return {"radial_clearance": "clearance", "applied_load": "load"}.get(
-        dimension, dimension.replace("_", " ")
-    )
+    owner, _, word = dimension.rpartition(".")
+    word = {"radial_clearance": "clearance", "applied_load": "load"}.get(word, word)
+    return f"{owner} {word.replace('_', ' ')}".strip()
 
 
 def _border_table(plane: Plane) -> Table:
     """For some x: the y at which the verdict changes, interpolated linearly in the growth rate."""
-    across, upwards = QUANTITIES[plane.x], QUANTITIES[plane.y]
+    across, upwards = plane.quantities
+    first, second = map(_name, plane.names)
     x, y = (np.asarray(plane.dataset[name].values, dtype=float) for name in (plane.x, plane.y))
-    names = [f"{model}: {_name(plane.y)} {upwards.unit}" for model in plane.models]
-    table = grid("Border between stable and unstable", f"{_name(plane.x)} {across.unit}", *names)
+    names = [f"{model}: {second} {upwards.unit}" for model in plane.models]
+    table = grid("Border between stable and unstable", f"{first} {across.unit}", *names)
     for i in np.unique(np.linspace(0, x.size - 1, min(x.size, 8)).round().astype(int)):
         cells = []
         for model in plane.models:
@@ -203,6 +218,7 @@ def study_document(study: ToleranceStudy) -> dict[str, Any]:
                 zip(map(str, _QUANTILES), study.samples.quantile(name, _QUANTILES), strict=True)
             )
             for name in ("threshold_speed", "critical_mass", "growth_rate")
+            if name in outputs
         },
         "stable_throughout": float(np.nanmean(outputs["stable_throughout"])),
         "unstable_throughout": float(np.nanmean(outputs["unstable_throughout"])),
@@ -217,11 +233,11 @@ def study_document(study: ToleranceStudy) -> dict[str, Any]:
 
 def study_tables(study: ToleranceStudy) -> list[RenderableType]:
     """Distribution, probability, and what matters."""
-    clearance = QUANTITIES["radial_clearance"].said(study.radial_clearance)
-    title = (
-        f"Tolerances: {study.thermal_model}, {clearance}, "
-        f"{next(iter(study.samples.inputs.values())).size} samples"
-    )
+    said = [study.thermal_model]
+    if study.radial_clearance is not None:
+        said.append(QUANTITIES["radial_clearance"].said(study.radial_clearance))
+    said.append(f"{next(iter(study.samples.inputs.values())).size} samples")
+    title = f"Tolerances: {', '.join(said)}"
     table = grid(title, "", "nominal", *(f"{100 * q:.0f} %" for q in _QUANTILES))
     rows = (
         ("threshold speed rpm", "threshold_speed", RPM),
@@ -229,6 +245,8 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
         ("growth rate 1/s", "growth_rate", 1.0),
     )
     for text, name, factor in rows:
+        if name not in study.nominal:
+            continue
         nominal = study.nominal[name]
         found = [float(value) * factor for value in study.samples.quantile(name, _QUANTILES)]
         first = None if nominal is None else nominal * factor
@@ -240,7 +258,7 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
     for name, value in study.importance.items():
         share = study.share_of_variance[name]
         said = f"{100.0 * share:.0f} %" if math.isfinite(share) else "-"
-        inputs.add_row(name.replace("_", " "), f"{value:+.2f}", said)
+        inputs.add_row(name.replace("_", " ").replace(".", ": "), f"{value:+.2f}", said)
     p, error = 100.0 * study.probability_of_instability, 100.0 * study.standard_error
     outputs = study.samples.outputs
     stable = 100.0 * float(np.nanmean(outputs["stable_throughout"]))

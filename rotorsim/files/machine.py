@@ -7,7 +7,8 @@ from the machine.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -19,7 +20,10 @@ from ..model.entries import NOT_IN_FILES, Example, Made, Quantity, one_of
 from ..model.machine import (
     Clearance,
     LateralSettings,
+    MachineControl,
     MachineOperating,
+    MachineTolerances,
+    MapEntry,
     Probe,
     SealEntry,
     StaticForce,
@@ -45,6 +49,7 @@ from ..rotor import Beam, Rotor, beam_rotor, with_unbalance
 from ..shipped import shipped_machines
 from ..text import printable
 from .formats import is_table, read_table
+from .parameters import held_values, parameter, place_named, spreads
 from .scenario import Scenario, load_scenario
 from .scenario.document import parse_toml, read_text
 from .scenario.reader import Reader
@@ -131,6 +136,9 @@ class MachineFile:
     load : tuple of StaticForce
     clearance : tuple of Clearance
     lateral : LateralSettings
+    map : tuple of MapEntry
+    tolerances : MachineTolerances or None
+    control : MachineControl or None
     source : Path or None
         The file.
     text : str
@@ -151,6 +159,9 @@ class MachineFile:
     load: tuple[StaticForce, ...] = ()
     clearance: tuple[Clearance, ...] = ()
     lateral: LateralSettings = field(default_factory=LateralSettings)
+    map: tuple[MapEntry, ...] = ()
+    tolerances: MachineTolerances | None = None
+    control: MachineControl | None = None
     source: Annotated[Path | None, NOT_IN_FILES] = None
     text: Annotated[str, NOT_IN_FILES] = field(default="", repr=False)
 
@@ -210,8 +221,29 @@ class MachineFile:
         return distinct_names(self.seal, "seal")
 
     def check_files(self) -> None:
-        """Read the files of bearings and coefficients, whose errors name themselves."""
+        """Read the files of bearings and coefficients, and check names of parameters and places."""
         _ = self.bearings, self.tables
+        for i, entry in enumerate(self.map):
+            for axis in ("x", "y"):
+                key = f"map[{i}].{axis}"
+                found = parameter(self, getattr(entry, axis), key)
+                given = getattr(entry, f"{axis}_values")
+                if given is not None:
+                    found.values(given, f"{key}_values")
+            held_values(self, entry.hold or {}, f"map[{i}].hold")
+        if self.tolerances is not None:
+            spreads(self, self.tolerances.spread, "tolerances.spread")
+        if self.control is not None:
+            for word in ("actuator", "sensor"):
+                for i, place in enumerate(getattr(self.control, word)):
+                    place_named(self, place, f"control.{word}[{i}]")
+
+    def with_parts(self, **parts: Any) -> MachineFile:
+        """Machine with some of its parts replaced; bearings and tables are not read again."""
+        bearings = parts.pop("bearings", self.bearings)
+        other = replace(self, **parts)
+        other.__dict__.update(bearings=bearings, tables=self.tables)
+        return other
 
     @cached_property
     def bearings(self) -> dict[str, Scenario]:
@@ -268,19 +300,24 @@ class MachineFile:
             raise InputError(f"no such file beside the machine's: {path}", key=key, value=name)
         return path
 
-    def rotor_with_unbalance(self, refinement: int = 1) -> Rotor:
+    def rotor_with_unbalance(self, refinement: int = 1, more: Sequence[float] = ()) -> Rotor:
         """Assemble the rotor, with a node at every place that the file names.
 
         Parameters
         ----------
         refinement : int
             See `Beam.mesh`.
+        more : sequence of float
+            Further places [m].
         """
         groups = (self.support, self.seal, self.probe, self.load, self.clearance)
         places = [entry.at for group in groups for entry in group]
         places += [entry.at for entry in self.rotor.unbalance]
         places += [entry.at for entry in self.lateral.destabilising_stiffness]
-        rotor = beam_rotor(self.rotor.beam, places, refinement)
+        if self.control is not None:
+            named = (*self.control.actuator, *self.control.sensor)
+            places += [place_named(self, text, "control.actuator") for text in named]
+        rotor = beam_rotor(self.rotor.beam, [*places, *more], refinement)
         top = max(self.operating.speeds)
         above_zero("operating", speed=top)
         graded = [entry for entry in self.rotor.unbalance if entry.grade is not None]

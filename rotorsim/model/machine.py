@@ -6,6 +6,7 @@ Positions are measured from the left end of the shaft [m]. The machine's frame: 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -13,8 +14,10 @@ from typing import Annotated, Any
 from ..errors import InputError
 from ..units import parse_quantity
 from .entries import Angle, Displacement, Example, Leaf, Length, Number, Quantity, Speed
-from .operating import SpeedRange, ascending
+from .operating import MAX_COUNT, SpeedRange, ascending
+from .orbit import Design
 from .shaft import Place
+from .tolerances import Distribution
 
 Matrix = tuple[tuple[float, float], tuple[float, float]]
 
@@ -294,6 +297,100 @@ class LateralSettings:
     edition: str = "not stated"
     unbalance_factor: Annotated[float, Number(above=0.0, most=100.0)] = 4.0
     destabilising_stiffness: tuple[Destabilising, ...] = ()
+
+
+class _Unread(Leaf):
+    """A value whose meaning depends on the parameter that it belongs to."""
+
+    def read(self, value: object) -> Any:
+        """Return it as it stands."""
+        return tuple(value) if isinstance(value, list) else value
+
+
+_Unchecked = Annotated[Any, _Unread()]
+
+
+@dataclass(frozen=True)
+class MapEntry:
+    """A map of stability over two parameters of the machine.
+
+    Parameters
+    ----------
+    x, y : str
+        Their names; see `rotorsim.files.parameters`.
+    x_values, y_values : list of str, str, dict or None
+        With units; or ``{ start, stop, count }``. By default a span about the file's value.
+    hold : dict
+        Values of other parameters, in place of the file's, by name.
+    """
+
+    x: Annotated[str, Example("speed")]
+    y: Annotated[str, Example("left.radial_clearance")]
+    x_values: _Unchecked = None
+    y_values: _Unchecked = None
+    hold: _Unchecked = None
+
+
+@dataclass(frozen=True)
+class MachineTolerances:
+    """Tolerances of a machine's parameters.
+
+    Parameters
+    ----------
+    spread : dict
+        By the parameter's name: ``"5 um"``, ``"10 %"``, or a table with its own distribution.
+    distribution : Distribution
+        Of every parameter that does not say otherwise.
+    speed : float or None
+        At which stability is asked for [rad/s]; by default the highest continuous one, else the
+        highest.
+    samples, seed : int
+        See `rotorsim.model.tolerances.ToleranceSettings`.
+    """
+
+    spread: Annotated[Any, _Unread(), Example({"left.radial_clearance": "5 um"})]
+    distribution: Distribution = Distribution.UNIFORM
+    speed: Speed | None = None
+    samples: Annotated[int, Number(least=8, most=MAX_COUNT)] = 64
+    seed: Annotated[int, Number(least=0, most=2**31)] = 0
+
+
+@dataclass(frozen=True)
+class MachineControl:
+    """Active magnetic actuators and the sensors that they listen to.
+
+    Parameters
+    ----------
+    actuator, sensor : tuple of str
+        Places: lengths from the left end, or names of discs, supports, seals, probes. Each acts or
+        measures along x and y. Sensors default to the actuators' places.
+    design : Design
+        ``lqr``: regulator and Kalman filter on the reduced machine; ``pd``: each sensor to the
+        actuator of the same number.
+    max_force : float
+        Saturation of each axis [N].
+    speed : float or None
+        By default the highest [rad/s].
+    displacement_scale : float
+        At the sensors, as bad as the full force [m].
+    force_scale : float or None
+        What counts as a large force [N]; `max_force` where that is finite.
+    noise : float
+        Of the sensors, for the Kalman filter: against a disturbance of `force_scale` [m].
+    reduction_error : float
+        Of the reduced model: bound on the error of the receptance from actuators to sensors, as a
+        share of its largest stable part; less where the feedback would drive what is left out.
+    """
+
+    actuator: Annotated[tuple[str, ...], Example(["250 mm"])]
+    sensor: tuple[str, ...] = ()
+    design: Design = Design.LQR
+    max_force: Annotated[float, Quantity("force", "2 kN")] = math.inf
+    speed: Speed | None = None
+    displacement_scale: Annotated[float, Quantity("length", "20 um")] = 2e-5
+    force_scale: Annotated[float, Quantity("force", "500 N")] | None = None
+    noise: Annotated[float, Quantity("length", "1 um")] = 1e-6
+    reduction_error: Annotated[float, Number(above=0.0, most=0.5)] = 1e-3
 
 
 def distinct_names(entries: Sequence[Any], word: str) -> tuple[str, ...]:

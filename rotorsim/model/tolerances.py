@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
@@ -56,20 +57,23 @@ KINDS: dict[str, tuple[str | None, str]] = {
 """Kind of quantity and an example for every input; None: a share of the nominal value only."""
 
 
-def parse_spread(text: object, name: str) -> Spread:
+def parse_spread(
+    text: object, name: str, known: Mapping[str, tuple[str | None, str]] = KINDS
+) -> Spread:
     """Spread of the input `name`: text such as ``"5 um"`` or ``"5 %"``.
 
-    A table ``{ spread = "5 um", distribution = "normal" }`` is read as well.
+    A table ``{ spread = "5 um", distribution = "normal" }`` is read as well. `known` has the
+    kind of quantity and an example by the inputs' names.
 
     Raises InputError: What is allowed.
     """
     if isinstance(text, dict):
-        return _from_table(text, name)
-    kind, example = KINDS[name]
+        return _from_table(text, name, known)
+    kind, example = known[name]
     match = _PERCENT.fullmatch(text) if isinstance(text, str) and len(text) < 40 else None
     if match is not None:
         percent = float(match[1])
-        if name == "supply_temperature":
+        if kind == "temperature difference":
             raise InputError('must be a difference such as "3 K", not a share', value=text)
         if not 0.0 < percent <= _MAX_PERCENT:
             raise InputError(f"must be above 0 and at most {_MAX_PERCENT:g} %", value=text)
@@ -82,13 +86,15 @@ def parse_spread(text: object, name: str) -> Spread:
     return Spread(value, relative=False)
 
 
-def _from_table(table: dict[object, object], name: str) -> Spread:
+def _from_table(
+    table: dict[object, object], name: str, known: Mapping[str, tuple[str | None, str]]
+) -> Spread:
     unknown = [key for key in table if key not in ("spread", "distribution")]
     if unknown or "spread" not in table or isinstance(table["spread"], dict):
         raise InputError(
-            f'must be {{ spread = "{KINDS[name][1]}", distribution = "normal" }}', value=table
+            f'must be {{ spread = "{known[name][1]}", distribution = "normal" }}', value=table
         )
-    spread = parse_spread(table["spread"], name)
+    spread = parse_spread(table["spread"], name, known)
     if "distribution" not in table:
         return spread
     try:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model import Bearing
     from ..study.control import ControlStudy
+    from ..study.machine_control import MachineControlStudy
     from ..study.stability import Campbell
     from ..study.tolerances import ToleranceStudy
     from .recording import RecordingContents
@@ -396,3 +397,29 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
     if known:
         names = [f"{name}: {one.status.value.replace('_', ' ')}" for name, one in known.items()]
         yield "control_orbits", orbit_plot(list(known.values()), heading, names=names)
+
+
+def machine_control_figures(
+    study: MachineControlStudy, title: str = ""
+) -> Iterator[tuple[str, Figure]]:
+    """Receptance from actuator to sensor, whole and reduced, and the runs in time."""
+    from ..machine.reduction import response
+    from .figures import bode_plot
+    from .figures.machine import control_traces
+
+    heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.design.name}".strip()
+    frequency = np.geomspace(0.05 * study.speed, 6.0 * study.speed, 800)
+    system, small = study.system, study.reduction.system
+    closed, _ = study.feedback.closed_loop(system)
+    more = closed.shape[0] - system.nstates
+    inputs = np.vstack([system.B, np.zeros((more, system.ninputs))])
+    outputs = np.hstack([system.C, np.zeros((system.noutputs, more))])
+    responses = [
+        ("whole machine", response(system.A, system.B, system.C)(frequency)[:, 0, 0]),
+        (f"reduced to {small.nstates} states",
+         response(small.A, small.B, small.C)(frequency)[:, 0, 0]),
+        ("with control", response(closed, inputs, outputs)(frequency)[:, 0, 0]),
+    ]  # fmt: skip
+    yield "control_bode", bode_plot(frequency, responses, "x sensor/force x [m/N]", title=heading)
+    if study.controlled is not None and study.passive is not None:
+        yield "control_in_time", control_traces(study.passive, study.controlled, heading)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -15,6 +15,7 @@ from ..bearing.interpolation import CoefficientInterpolator
 from ..bearing.operating_point import OperatingPoint
 from ..errors import InputError
 from ..files.machine import MachineFile
+from ..files.parameters import Variant
 from ..files.scenario import Scenario
 from ..film.geometry import rotation
 from ..machine.branches import Modes, Verdict
@@ -30,6 +31,7 @@ from ..machine.support import (
     Support,
     TableSupport,
     Turned,
+    cross_stiffness,
 )
 from ..machine.thresholds import (
     CriticalSpeed,
@@ -41,6 +43,7 @@ from ..machine.thresholds import (
 from ..model import Case, LoadTarget, ThermalModel
 from ..model.machine import Matrix, SealEntry, SupportEntry
 from ..rotor import Rotor
+from .planes import changed
 from .sweep import Progress, sweep_points
 
 Array = NDArray[np.float64]
@@ -170,6 +173,7 @@ def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[Hea
 
 def analyse_machine(
     description: MachineFile,
+    models: Sequence[str] | None = None,
     *,
     workers: int | None = None,
     progress: Progress | None = None,
@@ -179,6 +183,8 @@ def analyse_machine(
     Parameters
     ----------
     description : MachineFile
+    models : sequence of str, optional
+        Thermal models; by default those of the bearings' files.
     workers : int, optional
         Processes for the films; see `rotorsim.tabulate`.
     progress : callable, optional
@@ -195,8 +201,11 @@ def analyse_machine(
         The rotor needs static loads and has no two supports that carry them, or a support that
         carries load has no stiffness.
     """
-    names = {str(model) for one in description.bearings.values() for model in one.thermal_models}
-    ordered = [str(model) for model in ThermalModel if str(model) in names] or [_GIVEN]
+    known = thermal_models(description)
+    ordered = list(models or known)
+    for name in ordered:
+        if name not in known:
+            raise InputError(f"must be one of {', '.join(known)}", key="thermal_model", value=name)
     rotor = description.rotor_with_unbalance()
     total = len(ordered) * len(description.bearings) * len(description.operating.speeds)
     done = 0
@@ -207,21 +216,48 @@ def analyse_machine(
         if progress is not None:
             progress(done, total, point)
 
+    def sweep(cases: list[Case], speeds: list[float]) -> list[OperatingPoint]:
+        return sweep_points(cases, speeds, workers=workers, progress=counted)
+
+    speeds, variant = description.operating.speeds, Variant(description)
     return {
-        name: _Analysis(description, rotor, name, workers, counted).result() for name in ordered
+        name: MachineAnalysis(variant, rotor, name, speeds, sweep, counted).result()
+        for name in ordered
     }
 
 
-class _Analysis:
-    """One machine with one thermal model."""
+def thermal_models(description: MachineFile) -> list[str]:
+    """Thermal models of a machine's bearings, ``isothermal`` first; ``given`` without films."""
+    names = {str(model) for one in description.bearings.values() for model in one.thermal_models}
+    return [str(model) for model in ThermalModel if str(model) in names] or [_GIVEN]
+
+
+class MachineAnalysis:
+    """A machine, or a variant of it, with one thermal model.
+
+    Parameters
+    ----------
+    variant : Variant
+    rotor : Rotor
+    model : str
+        Thermal model.
+    speeds : sequence of float
+        [rad/s]
+    sweep : callable
+        Operating points of cases at the speeds, case by case.
+    progress : callable
+        Called after each film that is solved otherwise.
+    """
 
     def __init__(
-        self, description: MachineFile, rotor: Rotor, model: str, workers: int | None,
-        progress: Progress,
+        self, variant: Variant, rotor: Rotor, model: str, speeds: Sequence[float],
+        sweep: Callable[[list[Case], list[float]], list[OperatingPoint]],
+        progress: Progress = lambda *_: None,
     ) -> None:  # fmt: skip
-        self.description, self.rotor, self.model = description, rotor, model
-        self.workers, self.progress = workers, progress
-        self.speeds = np.array(description.operating.speeds)
+        self.variant, self.rotor, self.model = variant, rotor, model
+        self.sweep, self.progress = sweep, progress
+        self.description = description = variant.machine
+        self.speeds = np.array(speeds)
         self.nodes = [node_at(rotor, entry.at) for entry in description.support]
         self.seal_nodes = [node_at(rotor, entry.at) for entry in description.seal]
 
@@ -232,8 +268,18 @@ class _Analysis:
         states = tuple(
             SupportState(name, loads[:, i], points.get(name, ())) for i, name in enumerate(names)
         )
+        machine = self.assembled(states)
+        return MachineResult(
+            self.description, self.model, self.speeds, machine, states, tuple(statics)
+        )
+
+    def assembled(
+        self, states: Sequence[SupportState], films: Mapping[str, Support] | None = None
+    ) -> Machine:
+        """Rotor on its supports; `films` stand in for those of the points, by name."""
+        names = self.description.support_names
         mounts = [
-            Mount(node, self._support(entry, state), name)
+            Mount(node, self._support(entry, state, (films or {}).get(name)), name)
             for node, entry, state, name in zip(
                 self.nodes, self.description.support, states, names, strict=True
             )
@@ -244,10 +290,11 @@ class _Analysis:
                 self.seal_nodes, self.description.seal, self.description.seal_names, strict=True
             )
         ]
-        return MachineResult(
-            self.description, self.model, self.speeds, Machine(self.rotor, mounts), states,
-            tuple(statics),
-        )  # fmt: skip
+        mounts += [
+            Mount(node_at(self.rotor, at), cross_stiffness(q), f"Q at {at * 1e3:g} mm")
+            for at, q in self.variant.cross_stiffness.items()
+        ]
+        return Machine(self.rotor, mounts)
 
     def _force(self, speed: float) -> Array:
         """Static forces on the rotor's unknowns at a speed [N]."""
@@ -272,29 +319,49 @@ class _Analysis:
         if not (description.bearings or any(e.coefficients for e in description.support)):
             return loads, {}, []
         if count == 2:
-            return self._determinate(loads)
+            return self._determinate()
         return self._indeterminate(loads)
 
-    def _determinate(
-        self, loads: Array
-    ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
-        """Two supports: their loads follow from statics, then each film is a sweep of its own."""
+    def determinate_loads(self) -> Array:
+        """Static loads of two supports, (n, 2, 2) [N]."""
+        loads = np.empty((self.speeds.size, 2, 2))
         raised, unmoved = self._elevations(), _displaced(np.zeros(2))
         for k, speed in enumerate(self.speeds):
             force, laws = self._force(float(speed)), [unmoved, unmoved]
             loads[k] = static_equilibrium(self.rotor, force, self.nodes, laws, raised).reactions
+        self._replace_loads(loads)
+        return loads
+
+    def film_cases(self) -> list[Case] | None:
+        """Films that `result` will ask its sweep for; None where they depend on speed or films."""
+        if not self.description.bearings:
+            return []
+        if len(self.nodes) != 2:
+            return None
+        loads = self.determinate_loads()
+        return self._cases(loads[0]) if _alike(loads) else None
+
+    def _cases(self, loads: Array) -> list[Case]:
+        names = self.description.support_names
+        return [
+            self._case(i, self.description.bearings[name], loads[i])
+            for i, name in enumerate(names)
+            if name in self.description.bearings
+        ]
+
+    def _determinate(
+        self,
+    ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
+        """Two supports: their loads follow from statics, then each film is a sweep of its own."""
+        raised, loads = self._elevations(), self.determinate_loads()
         points: dict[str, tuple[OperatingPoint, ...]] = {}
         films = [
             (i, name, self.description.bearings[name])
             for i, name in enumerate(self.description.support_names)
             if name in self.description.bearings
         ]
-        alike = bool(np.allclose(loads, loads[0], rtol=1e-12, atol=0.0))
-        if alike:
-            cases = [self._case(i, scenario, loads[0, i]) for i, _, scenario in films]
-            found = sweep_points(
-                cases, self.speeds.tolist(), workers=self.workers, progress=self.progress
-            )
+        if _alike(loads):
+            found = self.sweep(self._cases(loads[0]), self.speeds.tolist())
             size = self.speeds.size
             for k, (_, name, _) in enumerate(films):
                 points[name] = tuple(found[k * size : (k + 1) * size])
@@ -358,6 +425,16 @@ class _Analysis:
                 self.progress(0, 0, point)
         return loads, {name: tuple(found) for name, found in points.items()}, statics
 
+    def _replace_loads(self, loads: Array) -> None:
+        """Give the static loads the magnitudes that the variant asks for."""
+        for i, name in enumerate(self.description.support_names):
+            wanted = self.variant.films.get(name, {}).get("applied_load")
+            if wanted is not None:
+                size = np.hypot(*loads[:, i].T)
+                if not size.all():
+                    raise InputError("has no static load whose direction to keep", key=name)
+                loads[:, i] *= wanted / size[:, None]
+
     def _elevations(self) -> Array:
         """Displacements of the housings along x and y [m]; upwards is -x."""
         return np.array([(-entry.elevation, 0.0) for entry in self.description.support])
@@ -367,6 +444,10 @@ class _Analysis:
         wanted = {str(model) for model in scenario.thermal_models}
         model = self.model if self.model in wanted else str(scenario.thermal_models[0])
         case = scenario.case(thermal_model=model)
+        name = self.description.support_names[i]
+        changes = dict(self.variant.films.get(name, {}))
+        changes.pop("applied_load", None)
+        case = changed(case, changes)
         turn = scenario.load_direction + self.description.support[i].angle
         direction = math.atan2(load[1], load[0])
         return replace(
@@ -393,11 +474,11 @@ class _Analysis:
         softness = np.asarray(np.linalg.inv(matrix), dtype=float)
         return lambda load: (np.asarray(softness @ load, dtype=float), softness)
 
-    def _support(self, entry: SupportEntry, state: SupportState) -> Support:
+    def _support(self, entry: SupportEntry, state: SupportState, film: Support | None) -> Support:
         """Support in the machine's frame, pedestal included."""
         support: Support
         if entry.bearing is not None:
-            support = _film_support(self.speeds, state)
+            support = film or film_support(self.speeds, state)
         elif entry.coefficients is not None:
             direction = state.direction[0] if np.all(np.isfinite(state.load)) else 0.0
             table = TableSupport(self.description.tables[state.name].interpolator())
@@ -411,6 +492,11 @@ class _Analysis:
             stand = entry.pedestal
             support = Pedestal(support, stand.mass, stand.stiffness, stand.damping)
         return support
+
+
+def _alike(loads: Array) -> bool:
+    """Whether the static loads are the same at all speeds."""
+    return bool(np.allclose(loads, loads[0], rtol=1e-12, atol=0.0))
 
 
 class _Film:
@@ -454,10 +540,13 @@ def _displaced(journal: Array) -> Law:
     return lambda _load: (journal, np.zeros((2, 2)))
 
 
-def _film_support(speeds: Array, state: SupportState) -> Support:
-    """Coefficients of a film's points over speed, turned to the machine's frame."""
+def film_support(speeds: Array, state: SupportState, full: bool = True) -> Support:
+    """Coefficients of a film's points over speed, turned to the machine's frame.
+
+    Without `full` those of pads are reduced at the shaft's frequency.
+    """
     converged = np.array([point.converged for point in state.points])
-    if converged.all() and all(point.pads for point in state.points):
+    if full and converged.all() and all(point.pads for point in state.points):
         return MatrixTable.of_points(state.points, [float(angle) for angle in state.direction])
     columns = np.full((speeds.size, 9), np.nan)
     for k, (point, angle) in enumerate(zip(state.points, state.direction, strict=True)):

@@ -24,7 +24,7 @@ from ..model import (
     ThermalModel,
     WaltherViscosity,
 )
-from ..rows import QUANTITIES
+from ..rows import Quantity, quantity
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -49,11 +49,11 @@ _SPEEDS = 12
 class Plane:
     """Stability over two inputs (SI), the others held.
 
-    x, y : Two of `_DIMENSIONS`.
+    x, y : Dimensions: two of `_DIMENSIONS`, or parameters of a machine.
     held : The others.
     dataset : xarray.Dataset. Over ``thermal_model``, x and y: ``growth_rate`` (largest real part
-        [1/s]: stable below 0), ``verdict``, ``mass_margin`` and more, see
-        `rotorsim.machine.StabilityMap`.
+        [1/s]: stable below 0), ``verdict``, and more, see `StabilityMap` and
+        `map_of_machine`.
     solved_points, failed_points : Films behind it, and how many of them did not converge.
     """
 
@@ -68,6 +68,18 @@ class Plane:
     def models(self) -> tuple[str, ...]:
         """Thermal models."""
         return tuple(str(name) for name in self.dataset["thermal_model"].values)
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Of x and y as they are written: of a machine ``left.radial_clearance``."""
+        x, y = (str(self.dataset[n].attrs.get("parameter", n)) for n in (self.x, self.y))
+        return x, y
+
+    @property
+    def quantities(self) -> tuple[Quantity, Quantity]:
+        """How x and y are shown."""
+        x, y = self.names
+        return quantity(x), quantity(y)
 
     def values(self, name: str, model: str) -> Array:
         """Variable of one thermal model, (n_x, n_y)."""
@@ -89,7 +101,7 @@ class Plane:
 
 def held_text(held: Mapping[str, float]) -> str:
     """``1200 kg, c = 100 µm``: what a plane or a diagram holds."""
-    return ", ".join(QUANTITIES[name].said(value) for name, value in held.items())
+    return ", ".join(quantity(name).said(value) for name, value in held.items())
 
 
 def plane_of_scenario(
@@ -128,8 +140,8 @@ def plane_of_scenario(
     speeds = np.asarray(given.get("speed", scenario.speeds if "speed" in (x, y) else []))
     speeds = speeds if speeds.size else scenario.speeds[-1:]
     table = tabulate_over(
-        scenario, axes, _solved_speeds(scenario, speeds), thermal_models=thermal_models, mesh=mesh,
-        executor=executor, workers=workers, progress=progress,
+        scenario, axes, solved_speeds(scenario.speeds, speeds), thermal_models=thermal_models,
+        mesh=mesh, executor=executor, workers=workers, progress=progress,
     )  # fmt: skip
     own = None if scenario.rotor is None else scenario.rotor.rigid_mass
     mass = given.get("mass")
@@ -238,12 +250,11 @@ def _film_values(
     return [float(supply + d) for d in np.linspace(-20.0, 20.0, 7)]
 
 
-def _solved_speeds(scenario: Scenario, wanted: Array) -> list[float]:
-    """Speeds to solve: the scenario's where they cover the wanted ones densely enough."""
+def solved_speeds(own: Array, wanted: Array) -> list[float]:
+    """Speeds to solve: the file's own where they cover the wanted ones densely enough."""
     low, high = float(wanted[0]), float(wanted[-1])
     if not high > low:
         return [low]
-    own = scenario.speeds
     if np.array_equal(wanted, own):
         return [float(speed) for speed in own]
     inside = own[(own > low) & (own < high)]

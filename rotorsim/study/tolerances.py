@@ -1,4 +1,4 @@
-"""What tolerances on a drawing mean: the film solved for many samples of its inputs."""
+"""What tolerances mean: films of a bearing or a machine solved for many samples of its inputs."""
 
 from __future__ import annotations
 
@@ -6,25 +6,30 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
+from ..files.parameters import Parameter, Variant, spreads
 from ..machine.machine import Machine
-from ..machine.modes import modes
+from ..machine.modes import machine_spectrum, modes
 from ..machine.support import ConstantSupport, MatrixTable, Support, TableSupport
-from ..machine.thresholds import ThresholdSpeed, threshold_speeds
+from ..machine.thresholds import ThresholdSpeed, find_thresholds, threshold_speeds
 from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..model import Case, LoadTarget, MeshSize
+from ..model.machine import MachineTolerances
+from ..model.tolerances import NORMAL_REACH, Spread
 from ..rotor import Rotor
 from ..rows import RPM
+from .machine import MachineAnalysis, MachineResult, SupportState, thermal_models
 from .planes import changed, with_mesh
-from .sweep import model_digest, refuse_other_sources
+from .sweep import model_digest, refuse_other_sources, sweep_points
 
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
+    from ..files.machine import MachineFile
     from ..files.scenario import Scenario
     from ..model.tolerances import ToleranceSettings
 
@@ -41,6 +46,17 @@ _INPUTS = {
 _SPEEDS = 6
 _REFINEMENTS = 2
 _BATCH = 4
+
+
+_State = TypeVar("_State")
+
+
+def _failure(point: OperatingPoint) -> str:
+    why = f": {point.message}" if point.message else ""
+    return (
+        f"the film at {point.speed * RPM:.0f} rpm did not converge "
+        f"({point.status.value.replace('_', ' ')}{why})"
+    )
 
 
 @dataclass(frozen=True)
@@ -69,25 +85,15 @@ class _FilmThreshold:
         Raises SampleError: The film did not converge.
         """
         case = changed(self.case, {_INPUTS[name]: value for name, value in sample.items()})
-        points = self._along(case, sorted({*self.speeds, self.operating_speed}))
+        found, points = _search(
+            lambda speeds: self._along(case, speeds), self._growth, self._thresholds,
+            self.operating_speed, self.speeds,
+        )  # fmt: skip
         at = points[self.operating_speed]
-        crossings = self._thresholds(points)
-        for _ in range(_REFINEMENTS):
-            # The film is solved where the threshold was found, which makes it exact there.
-            lost = next((c.speed for c in crossings if c.becomes_unstable), None)
-            if lost is None or min(abs(lost / s - 1.0) for s in points) < 1e-4:
-                break
-            points |= self._along(case, [lost])
-            crossings = self._thresholds(points)
-        rates = [self._growth(point) for point in points.values()]
-        found = [c.speed for c in crossings if c.becomes_unstable]
         return {
-            "growth_rate": self._growth(at),
+            **found,
             "critical_mass": at.critical_mass,
             "whirl_frequency_ratio": at.whirl_frequency_ratio,
-            "threshold_speed": found[0] if found else None,
-            "stable_throughout": float(max(rates) < 0.0),
-            "unstable_throughout": float(min(rates) >= 0.0),
         }
 
     def _along(self, case: Case, speeds: Sequence[float]) -> dict[float, OperatingPoint]:
@@ -98,11 +104,7 @@ class _FilmThreshold:
         for speed in speeds:
             point, warm = solve_case(case, speed, initial=warm)
             if not point.converged:
-                why = f": {point.message}" if point.message else ""
-                raise SampleError(
-                    f"the film at {speed * RPM:.0f} rpm did not converge "
-                    f"({point.status.value.replace('_', ' ')}{why})"
-                )
+                raise SampleError(_failure(point))
             points[speed] = point
         return points
 
@@ -115,6 +117,122 @@ class _FilmThreshold:
     def _thresholds(self, points: Mapping[float, OperatingPoint]) -> list[ThresholdSpeed]:
         machine = Machine.on_identical(self.rotor, _support(points))
         return threshold_speeds(machine, subdivisions=1)
+
+
+def _search(
+    solve: Callable[[Sequence[float]], dict[float, _State]],
+    growth: Callable[[_State], float],
+    thresholds: Callable[[Mapping[float, _State]], list[ThresholdSpeed]],
+    operating_speed: float,
+    speeds: Sequence[float],
+) -> tuple[dict[str, float | None], dict[float, _State]]:
+    """Growth rate at the operating speed, the lowest threshold, and the states at the speeds."""
+    states = solve(sorted({*speeds, operating_speed}))
+    crossings = thresholds(states)
+    for _ in range(_REFINEMENTS):
+        # The film is solved where the threshold was found, which makes it exact there.
+        lost = next((c.speed for c in crossings if c.becomes_unstable), None)
+        if lost is None or min(abs(lost / s - 1.0) for s in states) < 1e-4:
+            break
+        states |= solve([lost])
+        crossings = thresholds(states)
+    rates = [growth(state) for state in states.values()]
+    found = [c.speed for c in crossings if c.becomes_unstable]
+    return {
+        "growth_rate": growth(states[operating_speed]),
+        "threshold_speed": found[0] if found else None,
+        "stable_throughout": float(max(rates) < 0.0),
+        "unstable_throughout": float(min(rates) >= 0.0),
+    }, states
+
+
+@dataclass(frozen=True)
+class MachineThreshold:
+    """From sampled parameters of a machine to its thresholds, by solving its films.
+
+    Parameters
+    ----------
+    machine : MachineFile
+    parameters : mapping of str to Parameter
+        By the names that samples use.
+    thermal_model : str
+    operating_speed : float
+        [rad/s]
+    speeds : tuple of float
+        Between which the threshold is looked for, ascending [rad/s].
+    """
+
+    machine: MachineFile
+    parameters: Mapping[str, Parameter]
+    thermal_model: str
+    operating_speed: float
+    speeds: tuple[float, ...]
+
+    def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
+        """Thresholds of one sample: as `FilmThreshold`, without a critical mass.
+
+        Raises
+        ------
+        SampleError
+            A film or the static equilibrium did not converge.
+        """
+        variant = Variant(self.machine)
+        for name, value in sample.items():
+            variant = self.parameters[name].applied(variant, value)
+        places = [at for one in self.parameters.values() for at in one.places]
+        rotor = variant.machine.rotor_with_unbalance(more=places)
+
+        def solve(speeds: Sequence[float]) -> dict[float, _MachineAt]:
+            analysis = MachineAnalysis(variant, rotor, self.thermal_model, speeds, _swept_here)
+            found = analysis.result()
+            for state in found.supports:
+                for point in state.points:
+                    if not point.converged:
+                        raise SampleError(f"{state.name}: {_failure(point)}")
+            if not found.converged:
+                raise SampleError("no static equilibrium")
+            return {speed: _MachineAt(analysis, found, k) for k, speed in enumerate(speeds)}
+
+        return _search(
+            solve, _MachineAt.growth, _machine_thresholds, self.operating_speed, self.speeds
+        )[0]
+
+
+def _swept_here(cases: list[Case], speeds: list[float]) -> list[OperatingPoint]:
+    return sweep_points(cases, speeds, workers=1)
+
+
+class _MachineAt(NamedTuple):
+    """A solved machine at the k-th of its speeds."""
+
+    analysis: MachineAnalysis
+    result: MachineResult
+    place: int
+
+    def growth(self) -> float:
+        """Growth rate of the least stable mode [1/s]."""
+        speed = self.result.speeds[self.place]
+        found = machine_spectrum(self.result.machine, np.array([speed]))(float(speed))
+        return math.nan if found is None else found.leading.real
+
+
+def _machine_thresholds(states: Mapping[float, _MachineAt]) -> list[ThresholdSpeed]:
+    speeds = sorted(states)
+    first = states[speeds[0]]
+    parts = [[(states[s].result.supports[i], states[s].place) for s in speeds]
+             for i in range(len(first.result.supports))]  # fmt: skip
+    supports = [
+        SupportState(
+            part[0][0].name, np.array([state.load[k] for state, k in part]),
+            tuple(state.points[k] for state, k in part if state.points),
+        )
+        for part in parts
+    ]  # fmt: skip
+    analysis = MachineAnalysis(
+        first.analysis.variant, first.analysis.rotor, first.analysis.model, speeds, _swept_here
+    )
+    machine, along = analysis.assembled(supports), np.array(speeds)
+    return find_thresholds(machine_spectrum(machine, along), along)
 
 
 def _support(points: Mapping[float, OperatingPoint]) -> Support:
@@ -136,7 +254,7 @@ def _support(points: Mapping[float, OperatingPoint]) -> Support:
 class ToleranceStudy:
     """Distribution of thresholds under tolerances (SI).
 
-    radial_clearance : Nominal [m].
+    radial_clearance : Nominal [m]; None of a machine, whose bearings have each their own.
     operating_speed : [rad/s]
     nominal : Outputs (see `_FilmThreshold`) without any deviation.
     probability_of_instability, standard_error : At the operating speed.
@@ -148,7 +266,7 @@ class ToleranceStudy:
     """
 
     thermal_model: str
-    radial_clearance: float
+    radial_clearance: float | None
     rotor: Rotor
     operating_speed: float
     tolerances: Mapping[str, Tolerance]
@@ -205,22 +323,95 @@ def study_tolerances(
     model = thermal_model or ("thd" if "thd" in models else models[0])
     case = scenario.case(radial_clearance, model)
     speed = operating_speed or _operating_speed(scenario)
-    function = _FilmThreshold(case, rotor, speed, _search_speeds(scenario, speed))
+    function = _FilmThreshold(case, rotor, speed, _search_speeds(scenario.speeds, speed))
     tolerances = _tolerances_of(case, settings)
+    mapper = _mapper(executor, workers, progress)
+    return _studied(
+        function, tolerances, settings.samples, settings.seed, mapper, model,
+        case.bearing.radial_clearance, rotor, speed,
+    )  # fmt: skip
+
+
+def study_machine_tolerances(
+    machine: MachineFile,
+    settings: MachineTolerances | None = None,
+    *,
+    operating_speed: float | None = None,
+    thermal_model: str | None = None,
+    mesh: MeshSize | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> ToleranceStudy:
+    """Sample the tolerances of a machine's parameters, solve its films for every sample.
+
+    Parameters
+    ----------
+    machine : MachineFile
+    settings : MachineTolerances, optional
+        The file's ``[tolerances]`` by default.
+    operating_speed : float, optional
+        [rad/s]; by default that of the settings, the highest continuous one, or the highest.
+    thermal_model, mesh, executor, workers, progress
+        As for `study_tolerances`.
+
+    Raises
+    ------
+    InputError
+        No tolerances, a parameter without a value to spread about, or a spread that reaches below
+        zero.
+    """
+    settings = settings or machine.tolerances
+    if settings is None:
+        example = f'spread = {{ "{next(iter(machine.bearings), "left")}.clearance" = "5 um" }}'
+        raise InputError(f"is missing: write for example [tolerances] {example}", key="tolerances")
+    if mesh is not None:
+        bearings = {name: with_mesh(one, mesh) for name, one in machine.bearings.items()}
+        machine = machine.with_parts(bearings=bearings)
+    known = thermal_models(machine)
+    model = known[-1] if thermal_model is None else thermal_model
+    if model not in known:
+        raise InputError(f"must be one of {', '.join(known)}", key="thermal_model", value=model)
+    operating = machine.operating
+    speed = operating_speed or settings.speed
+    speed = speed or (operating.continuous or operating.speeds)[-1]
+    tolerances, parameters = {}, {}
+    for one, spread in spreads(machine, settings.spread, "tolerances.spread").items():
+        key = f"tolerances.spread.{one.name}"
+        nominal = one.nominal(machine)
+        if nominal is None:
+            raise InputError("has no one value in the file to spread about", key=key)
+        kind = (spread.distribution or settings.distribution).value
+        unsigned = one.sign != "any"
+        tolerances[one.name] = _tolerance(nominal, spread, kind, key, unsigned)
+        parameters[one.name] = one
+    function = MachineThreshold(
+        machine, parameters, model, speed, _search_speeds(np.array(operating.speeds), speed)
+    )
+    mapper = _mapper(executor, workers, progress)
+    rotor = machine.rotor_with_unbalance()
+    return _studied(
+        function, tolerances, settings.samples, settings.seed, mapper, model, None, rotor, speed
+    )
+
+
+def _studied(
+    function: Callable[[dict[str, float]], Mapping[str, float | None]],
+    tolerances: Mapping[str, Tolerance], count: int, seed: int, mapper: Callable, model: str,
+    radial_clearance: float | None, rotor: Rotor, speed: float,
+) -> ToleranceStudy:  # fmt: skip
+    """Propagate, and say what it means."""
     try:
         nominal = function({name: t.nominal for name, t in tolerances.items()})
     except SampleError as error:
         raise InputError(f"without any deviation {error}", key="tolerances") from error
-    samples = propagate(
-        function, tolerances, settings.samples, seed=settings.seed,
-        mapper=_mapper(executor, workers, progress),
-    )  # fmt: skip
+    samples = propagate(function, tolerances, count, seed=seed, mapper=mapper)
     if len(samples.failures) == len(next(iter(samples.inputs.values()))):
         raise InputError(f"no sample could be solved: {samples.failures[0][1]}", key="tolerances")
     p, error = samples.probability_above("growth_rate", 0.0)
     return ToleranceStudy(
         thermal_model=model,
-        radial_clearance=case.bearing.radial_clearance,
+        radial_clearance=radial_clearance,
         rotor=rotor,
         operating_speed=speed,
         tolerances=tolerances,
@@ -251,14 +442,21 @@ def _tolerances_of(case: Case, settings: ToleranceSettings) -> dict[str, Toleran
                 key=f"tolerances.{name}",
             )
         kind = (spread.distribution or settings.distribution).value
-        tolerance = Tolerance(nominal[name], spread.absolute(nominal[name]), kind)
-        reach = tolerance.spread * (4.0 if kind == "normal" else 1.0)
-        if not reach < nominal[name]:
-            raise InputError(
-                f"reaches below zero: {nominal[name]:.6g} - {reach:.6g}", key=f"tolerances.{name}"
-            )
-        tolerances[name] = tolerance
+        tolerances[name] = _tolerance(nominal[name], spread, kind, f"tolerances.{name}")
     return tolerances
+
+
+def _tolerance(
+    nominal: float, spread: Spread, kind: str, key: str, unsigned: bool = True
+) -> Tolerance:
+    """Distribution about a nominal value, which an `unsigned` one keeps above zero."""
+    size = spread.absolute(nominal)
+    if not size > 0.0:
+        raise InputError("must be a value with its unit: the nominal one is 0", key=key)
+    reach = size * (NORMAL_REACH if kind == "normal" else 1.0)
+    if unsigned and not reach < nominal:
+        raise InputError(f"reaches below zero: {nominal:.6g} - {reach:.6g}", key=key)
+    return Tolerance(nominal, size, kind)  # type: ignore[arg-type]
 
 
 def _operating_speed(scenario: Scenario) -> float:
@@ -268,9 +466,9 @@ def _operating_speed(scenario: Scenario) -> float:
     return float(scenario.speeds[-1])
 
 
-def _search_speeds(scenario: Scenario, operating_speed: float) -> tuple[float, ...]:
-    """Speeds of the scenario's range; half to one and a half times a single one."""
-    low, high = float(scenario.speeds[0]), float(scenario.speeds[-1])
+def _search_speeds(speeds: Array, operating_speed: float) -> tuple[float, ...]:
+    """Speeds of the file's range; half to one and a half times a single one."""
+    low, high = float(speeds[0]), float(speeds[-1])
     if not high > low:
         low, high = 0.5 * operating_speed, 1.5 * operating_speed
     low, high = min(low, operating_speed), max(high, operating_speed)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ...files.machine import MachineFile
 from ...machine.branches import Modes
 from ...machine.critical_map import CriticalSpeedMap
+from ...machine.output_feedback import LinearMotion
 from ...machine.peaks import ProbeResponse
 from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpeed
 from ...model.shaft import Disc, Section
@@ -423,3 +424,27 @@ def growth_over_speed(
     ax.set(xlabel="shaft speed [rpm]", ylabel="growth rate [1/s]", title=caption(title))
     ax.legend(loc="lower left")
     return figure_of(ax)
+
+
+def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str = "") -> Figure:
+    """Displacement at the first sensor without and with control, and its actuator's force."""
+    figure, axes = new_axes(2, 1, (6.6, 5.0), title, sharex=True)
+    upper, lower = axes[:, 0]
+    reach = 1.3 * np.abs(controlled.displacement[:, 0]).max() * MICRO
+    for name, run, look in (
+        ("without control", passive, {"color": "0.55", "lw": 0.8}),
+        ("with control", controlled, {"color": "#0072B2", "lw": 1.1}),
+    ):
+        shown = run.displacement[:, 0] * MICRO
+        upper.plot(run.t * _MILLI, shown, label=name, **look)
+        reach = max(reach, min(1.1 * float(np.abs(shown).max()), 3.0 * reach))
+    upper.set(ylabel="x at the sensor [µm]", ylim=(-reach, reach))
+    upper.legend(loc="upper right")
+    for number, word in enumerate("xy"):
+        lower.plot(
+            controlled.t * _MILLI, controlled.force[:, number], label=word,
+            **dict(series_style("", number), linewidth=1.0),
+        )  # fmt: skip
+    lower.set(xlabel="time [ms]", ylabel="force at the actuator [N]")
+    lower.legend(loc="upper right")
+    return figure

@@ -14,7 +14,7 @@ from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
 from ...errors import InputError
-from ...rows import QUANTITIES
+from ...rows import quantity
 from ...text import caption
 from .style import axes_or_new, figure_of, model_label, model_style
 
@@ -61,7 +61,8 @@ def stability_map(
         `Plane.dataset` give it. With isothermal and THD there are regions
         that only heating changes; with one model, stable and unstable.
     x, y : str
-        Dimensions, see `rotorsim.rows.QUANTITIES`.
+        Dimensions, see `rotorsim.rows.quantity`; a machine's parameter stands in the attribute
+        ``parameter`` of its coordinate.
     marks : mapping of str to (x, y), optional
         Points to mark (SI), by what the legend calls them: ``{"highest speed": (840.0, 300.0)}``.
 
@@ -85,7 +86,8 @@ def stability_map(
     }
     first, second = rates[cold], rates[hot]
     known = np.isfinite(first) & np.isfinite(second)
-    along, across = QUANTITIES[x].shown(along), QUANTITIES[y].shown(across)
+    shown_as = [quantity(str(chart[name].attrs.get("parameter", name))) for name in (x, y)]
+    along, across = shown_as[0].shown(along), shown_as[1].shown(across)
     ax.set_facecolor("#bbbbbb")
     # A region is where the least of its (signed) growth rates is positive: smooth borders.
     signed = (
@@ -110,11 +112,11 @@ def stability_map(
     if not known.all():
         shown.append(Patch(fc="#bbbbbb", ec="#333333", label="not computed"))
     for sign, (label, point) in zip(_MARKS, (marks or {}).items(), strict=False):
-        place = [QUANTITIES[n].shown(v) for n, v in zip((x, y), point, strict=True)]
+        place = [q.shown(v) for q, v in zip(shown_as, point, strict=True)]
         look: dict[str, Any] = {"marker": sign, "color": "k", "mfc": "w", "ls": ""}
         ax.plot(*place, ms=13 if sign == "*" else 8, mew=1.2, zorder=5, clip_on=False, **look)
         shown.append(Line2D([], [], ms=9, label=label, **look))
-    ax.set(xlabel=QUANTITIES[x].axis, ylabel=QUANTITIES[y].axis, title=caption(title))
+    ax.set(xlabel=shown_as[0].axis, ylabel=shown_as[1].axis, title=caption(title))
     ax.grid(visible=False)
     figure = figure_of(ax)
     if len(figure.axes) == 1:

@@ -261,13 +261,14 @@ _NAMES = {
 def tolerance_histograms(study: ToleranceStudy, title: str = "") -> Figure:
     """Histograms of threshold speed and critical mass, and the inputs' importance.
 
-    Samples whose film did not converge are in none of them, and said.
+    Of a machine the growth rate takes the place of the critical mass. Samples whose film did not
+    converge are in none of them, and said.
     """
     failures = [sample for sample, _ in study.samples.failures]
     failed = len(failures)
-    threshold_speed, critical_mass = (
-        np.delete(study.samples.outputs[name], failures)
-        for name in ("threshold_speed", "critical_mass")
+    second = "critical_mass" if "critical_mass" in study.nominal else "growth_rate"
+    threshold_speed, other = (
+        np.delete(study.samples.outputs[name], failures) for name in ("threshold_speed", second)
     )
     nominal, importance = study.nominal, study.importance
     mass = study.rotor.rigid_mass
@@ -278,14 +279,15 @@ def tolerance_histograms(study: ToleranceStudy, title: str = "") -> Figure:
     at = None if nominal["threshold_speed"] is None else nominal["threshold_speed"] * RPM
     mark = (study.operating_speed * RPM, "operating speed")
     _histogram(speed, threshold_speed * RPM, "threshold speed [rpm]", at, mark)
-    _histogram(
-        mass_axes, critical_mass, "critical mass at operating speed [kg]", nominal["critical_mass"],
-        None if mass is None else (mass, "rotor mass"),
-    )  # fmt: skip
+    label = "critical mass at operating speed [kg]"
+    border = None if mass is None else (mass, "rotor mass")
+    if second == "growth_rate":
+        label, border = "growth rate at operating speed [1/s]", (0.0, "unstable above")
+    _histogram(mass_axes, other, label, nominal[second], border)
     names = list(importance)[::-1]
     values = np.array([importance[name] for name in names])
     bars.barh(
-        [_NAMES.get(name, name) for name in names],
+        [_NAMES.get(name, name.replace("_", " ").replace(".", ": ")) for name in names],
         values,
         color="#c9d8e4",
         edgecolor="k",

@@ -1,0 +1,223 @@
+"""Actuators on a machine: designed on a reduced model, tried in time on the whole machine."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..files.machine import MachineFile
+from ..files.parameters import place_named
+from ..machine.machine import Machine
+from ..machine.matrices import massive_unknowns
+from ..machine.modes import modes
+from ..machine.output_feedback import (
+    LinearMotion,
+    OutputFeedback,
+    modulus_margin,
+    pd_of_sensors,
+    regulator,
+    run_in_time,
+)
+from ..machine.peaks import node_at
+from ..machine.reduction import Reduction, reduced
+from ..machine.statespace import state_space
+from ..model.machine import MachineControl
+from ..model.orbit import Design
+
+if TYPE_CHECKING:
+    import control
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+_STEPS = 256
+"""Of a revolution in time, at least."""
+_LEAST_ERROR = 1e-8
+"""Of a reduction, relative: until here it is refined where the whole machine is not held."""
+_CORNER = 10.0
+"""Where a PD's derivative ends, as a multiple of the shaft's speed."""
+
+
+@dataclass(frozen=True, eq=False)
+class MachineControlStudy:
+    """Feedback of a machine's actuators and what it does (SI).
+
+    Attributes
+    ----------
+    speed, disturbance : float
+        [rad/s], [m]
+    design : Design
+    actuators, sensors : tuple of float
+        Places [m].
+    system : control.StateSpace
+        The whole machine: forces at the actuators to displacements at the sensors, x and y of each.
+    reduction : Reduction
+    feedback : OutputFeedback
+    passive_eigenvalues, controlled_eigenvalues : complex arrays
+        Of the whole machine [1/s], least stable first.
+    margin : float
+        See `modulus_margin`.
+    passive, controlled : LinearMotion or None
+        Of the whole machine, from the shape of its least stable mode; None without a run.
+    """
+
+    speed: float
+    disturbance: float
+    design: Design
+    actuators: tuple[float, ...]
+    sensors: tuple[float, ...]
+    system: control.StateSpace
+    reduction: Reduction
+    feedback: OutputFeedback
+    passive_eigenvalues: ComplexArray
+    controlled_eigenvalues: ComplexArray
+    margin: float
+    passive: LinearMotion | None
+    controlled: LinearMotion | None
+
+    @property
+    def largest_force(self) -> float | None:
+        """Of one axis of an actuator in the run [N]."""
+        return None if self.controlled is None else float(np.abs(self.controlled.force).max())
+
+    @property
+    def saturates(self) -> bool:
+        """Whether an actuator reached its limit in the run."""
+        force = self.largest_force
+        return force is not None and force >= (1.0 - 1e-9) * self.feedback.max_force
+
+    @property
+    def holds(self) -> bool:
+        """Whether the whole machine is stable and its run ends nearer to rest than it began."""
+        stable = complex(self.controlled_eigenvalues[0]).real < 0.0
+        if self.controlled is None or not stable:
+            return stable
+        late = self.controlled.size[3 * self.controlled.size.size // 4 :]
+        return bool(np.isfinite(late).all() and late.max() < 0.5 * self.disturbance)
+
+
+def study_machine_control(
+    description: MachineFile,
+    machine: Machine,
+    settings: MachineControl,
+    *,
+    disturbance: float = 1e-6,
+    revolutions: int = 60,
+) -> MachineControlStudy:
+    """Design a machine's feedback at one speed, and try it on the whole linear machine.
+
+    Parameters
+    ----------
+    description : MachineFile
+    machine : Machine
+        Its films solved, see `rotorsim.study.machines.assembled`.
+    settings : MachineControl
+    disturbance : float
+        Largest displacement at the start of the run in time [m].
+    revolutions : int
+        Of that run; 0: none.
+
+    Notes
+    -----
+    Where a design on the reduced machine does not hold the whole one, whose other modes it drives,
+    the reduction's error is lowered by tens.
+
+    Raises
+    ------
+    InputError
+        A place is off the shaft, an unstable mode is out of reach, or nothing says which force is
+        large.
+    """
+    places = {
+        word: tuple(
+            place_named(description, text, f"control.{word}[{i}]")
+            for i, text in enumerate(getattr(settings, word))
+        )
+        for word in ("actuator", "sensor")
+    }
+    actuators, sensors = places["actuator"], places["sensor"] or places["actuator"]
+    if not actuators:
+        raise InputError('is missing: actuator = ["250 mm"]', key="control.actuator")
+    speed = settings.speed or max(description.operating.speeds)
+    inputs, outputs = (_unknowns(machine, one) for one in (actuators, sensors))
+    if len(set(inputs)) < len(inputs):
+        raise InputError("two actuators stand at one place", key="control.actuator")
+    every = state_space(machine, speed=speed)
+    system = every[outputs, inputs]
+    share = settings.reduction_error
+    while True:
+        reduction = reduced(system, share)
+        feedback = _designed(reduction.system, settings, speed)
+        growth = np.linalg.eigvals(feedback.closed_loop(system)[0]).real.max()
+        left_out = reduction.system.nstates < system.nstates
+        if growth < 0.0 or not left_out or share < _LEAST_ERROR:
+            break
+        # What the reduced model leaves out is excited by the feedback: leave out less.
+        share /= 10.0
+    closed, _ = feedback.closed_loop(system)
+    passive, controlled = _sorted(system.poles()), _sorted(np.linalg.eigvals(closed))
+    runs: list[LinearMotion | None] = [None, None]
+    if revolutions:
+        start = _start(machine, speed, disturbance)
+        top = max(_STEPS * speed, 8.0 * _highest(reduction.system)) / (2.0 * math.pi)
+        duration = revolutions * 2.0 * math.pi / speed
+        watched = np.asarray(every.C, dtype=float)[_displacements(machine)]
+        runs = [
+            run_in_time(system, start, duration, 1.0 / top, one, watched)
+            for one in (None, feedback)
+        ]
+    return MachineControlStudy(
+        speed, disturbance, settings.design, actuators, sensors, system, reduction, feedback,
+        passive, controlled, modulus_margin(system, feedback), *runs,
+    )  # fmt: skip
+
+
+def _designed(small: Any, settings: MachineControl, speed: float) -> OutputFeedback:
+    """Feedback of the reduced machine."""
+    limit = settings.max_force
+    if settings.design is Design.PD:
+        return pd_of_sensors(small, _CORNER * speed, limit)
+    large = settings.force_scale or (limit if math.isfinite(limit) else None)
+    if large is None:
+        raise InputError(
+            'is missing, or max_force: which force is large? "500 N" say',
+            key="control.force_scale",
+        )
+    return regulator(small, settings.displacement_scale, large, settings.noise, limit)
+
+
+def _unknowns(machine: Machine, places: Sequence[float]) -> list[int]:
+    """Numbers of the unknowns x and y at places."""
+    rotor = machine.rotor
+    return [k for at in places for k in rotor.planes[node_at(rotor, at)]]
+
+
+def _displacements(machine: Machine) -> list[int]:
+    return [k for pair in machine.rotor.planes for k in pair]
+
+
+def _highest(system: Any) -> float:
+    return float(np.abs(np.asarray(system.poles()).imag).max(initial=0.0))
+
+
+def _start(machine: Machine, speed: float, disturbance: float) -> Array:
+    """State on the least stable mode's shape, its largest displacement `disturbance`."""
+    found = modes(machine, speed)
+    k = int(found.least_stable[0])
+    value, shape = complex(found.eigenvalues[0, k]), found.shapes[0, k]
+    planes = np.array(_displacements(machine))
+    largest = shape[planes[np.abs(shape[planes]).argmax()]]
+    shape = disturbance * shape / largest
+    heavy = massive_unknowns(machine.matrices(speed)[0])
+    return np.concatenate([shape.real, (value * shape).real[heavy]])
+
+
+def _sorted(values: Any) -> ComplexArray:
+    found = np.asarray(values, dtype=complex)
+    return found[np.argsort(-found.real, kind="stable")]
