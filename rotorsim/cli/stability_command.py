@@ -294,7 +294,8 @@ class _Work:
 
     def __init__(
         self, output: Output, model: str | None, mesh: _Mesh, cells: int | None,
-        folder: Path | None, workers: int | None, scheduler: str | None, bearing: str | None, speeds: str | None,
+        folder: Path | None, workers: int | None, scheduler: str | None, bearing: str | None,
+        speeds: str | None,
     ) -> None:  # fmt: skip
         self.output, self.model, self.cells, self.folder = output, model, cells, folder
         self.workers, self.scheduler, self.mesh = workers, scheduler, mesh

@@ -80,8 +80,8 @@ class Variant:
     ----------
     machine : MachineFile
     films : mapping of str to mapping
-        Changes of each support's film, see `rotorsim.study.planes.changed`; ``applied_load`` replaces
-        the magnitude of its static load.
+        Changes of each support's film, see `rotorsim.study.planes.changed`; ``applied_load``
+        replaces the magnitude of its static load.
     cross_stiffness : mapping of float to float
         Destabilising stiffness [N/m] by place [m].
     """
