@@ -22,7 +22,7 @@ from ..rotor import Rotor
 from ..threads import on_one_blas_thread
 from .machine import MachineAnalysis, MachineResult, SupportState, film_support, thermal_models
 from .planes import Plane, solved_speeds, with_mesh
-from .sweep import Progress, available_cores, sweep_points
+from .sweep import Progress, available_cores, map_on_processes, sweep_points
 
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
@@ -179,8 +179,6 @@ def solve_variants(
     workers, progress
         As for `rotorsim.tabulate`.
     """
-    from .processes import map_on_processes
-
     rotors = _Rotors(places)
     analyses = [
         MachineAnalysis(one, rotors(one.machine), model, speeds, _no_sweep) for one in variants
@@ -281,8 +279,6 @@ class _Job:
 
     def result(self, model: str) -> tuple[Array, Array, float, list[OperatingPoint]]:
         """Growth rate and frequency (n_x, n_y), interpolation error, and the films behind them."""
-        from .processes import map_on_processes
-
         own = np.array(self.base.machine.operating.speeds)
         speeds = [self.speed]
         if self.speed_axis is not None:
