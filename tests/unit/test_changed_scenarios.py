@@ -13,7 +13,7 @@ from scenario_texts import SMALL
 import rotorsim as rs
 from rotorsim.errors import InputError
 from rotorsim.files.scenario import Scenario, load_scenario
-from rotorsim.files.scenario.scenario import _to_toml
+from rotorsim.files.scenario.scenario import to_toml
 from rotorsim.model import EccentricityTarget, LoadTarget
 
 SCENARIOS = sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml"))
@@ -52,7 +52,7 @@ def test_one_description_of_the_oil_takes_the_place_of_another() -> None:
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_written_text_holds_the_entries_of_the_file(path: Path) -> None:
     tables = tomllib.loads(path.read_text(encoding="utf-8"))
-    assert tomllib.loads(_to_toml(tables)) == tables
+    assert tomllib.loads(to_toml(tables)) == tables
     assert load_scenario(path).replace(title="other").title == "other"
 
 

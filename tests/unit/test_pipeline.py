@@ -143,7 +143,7 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
     from dataclasses import replace
 
     from rotorsim.bearing.drawing import STANDARD_GRAVITY
-    from rotorsim.study.main_job import _map_of
+    from rotorsim.study.main_job import map_of
 
     table = as_table(points, scenario)
     alone = replace(scenario, rotor=None)
@@ -158,5 +158,5 @@ def test_a_map_without_a_mass_to_go_by(scenario, points):
         (critical, alone, table),
         (load / STANDARD_GRAVITY, alone, stable),
     ):
-        found = _map_of(case, known).dataset["mass"].values
+        found = map_of(case, known).dataset["mass"].values
         assert found.mean() == pytest.approx(1.525 * mass, rel=1e-6)
