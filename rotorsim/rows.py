@@ -175,6 +175,8 @@ QUANTITIES = {
     "shaft_temperature": Quantity(
         "shaft temperature", "T_shaft", "°C", 1.0, -ZERO_CELSIUS, digits=3
     ),
+    "hot_radial_clearance": Quantity("hot radial clearance", "c_hot", "µm", 1e6, digits=4),
+    "hot_preload": Quantity("hot preload", "m_hot", digits=3),
     "outlet_temperature": Quantity(
         "oil outlet temperature", "T_out", "°C", 1.0, -ZERO_CELSIUS, digits=3
     ),

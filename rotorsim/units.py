@@ -63,6 +63,7 @@ _KINDS = (
     _Kind("dynamic viscosity", "Pa*s", "0.0277 Pa*s", 1e-8, 1e6),
     _Kind("kinematic viscosity", "m^2/s", "32 cSt", 1e-10, 1e3),
     _Kind("temperature coefficient", "1/K", "0.034 / delta_degC", 1e-9, 1e1),
+    _Kind("thermal expansion", "1/K", "11.7e-6 / delta_degC", 1e-10, 1e-2),
     _Kind("density", "kg/m^3", "860 kg/m^3", 1e-3, 1e5),
     _Kind("specific heat", "J/(kg*K)", "2000 J/(kg*delta_degC)", 1e-1, 1e6),
     _Kind("thermal conductivity", "W/(m*K)", "0.13 W/(m*delta_degC)", 1e-5, 1e5),

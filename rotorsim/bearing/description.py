@@ -28,11 +28,18 @@ if TYPE_CHECKING:
 _POINT_ROWS = (
     "eccentricity_ratio", "attitude_angle", "load", "sommerfeld_number", "min_film_thickness",
     "max_pressure", "max_temperature", "mean_temperature", "shaft_temperature",
-    "outlet_temperature", "friction_force", "power_loss", "side_flow", "critical_mass",
-    "whirl_frequency_ratio", "wall_heat_share", "heat_imbalance",
+    "hot_radial_clearance", "hot_preload", "outlet_temperature", "friction_force", "power_loss",
+    "side_flow", "critical_mass", "whirl_frequency_ratio", "wall_heat_share", "heat_imbalance",
 )  # fmt: skip
 """Quantities of an operating point, in the order in which they are shown."""
-_THERMAL = ("shaft_temperature", "outlet_temperature", "wall_heat_share", "heat_imbalance")
+_THERMAL = (
+    "shaft_temperature",
+    "hot_radial_clearance",
+    "hot_preload",
+    "outlet_temperature",
+    "wall_heat_share",
+    "heat_imbalance",
+)
 """Left out of a point's rows where they are not known."""
 COEFFICIENT_HEAD = ("rpm", "Kxx", "Kxy", "Kyx", "Kyy", "Cxx", "Cxy", "Cyx", "Cyy")
 

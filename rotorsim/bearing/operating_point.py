@@ -158,6 +158,7 @@ class PadResult:
     max_temperature : Of the pad's surface [K]; isothermal: the supply's.
     inlet_temperature : Of the oil that enters its film [K].
     inlet_fraction : Part of its leading edge that is full of oil: below 1 the pad is starved.
+    hot_radial_clearance, hot_preload : When hot, machined [m]; with thermal expansion only.
     unloaded : Its film cannot be balanced at positive pressure: the pad floats or flutters. It is
         kept out of the equilibrium and the coefficients; its tilt is arbitrary.
     """
@@ -171,6 +172,8 @@ class PadResult:
     inlet_temperature: float
     inlet_fraction: float
     unloaded: bool
+    hot_radial_clearance: float | None = None
+    hot_preload: float | None = None
 
 
 @dataclass(frozen=True)
@@ -189,6 +192,7 @@ class OperatingPoint:
     radial_clearance : float
         [m]
     eccentricity_ratio : float
+        e over `running_clearance`.
     attitude_angle : float
         From the load line to the journal's centre, in the direction of rotation [rad].
     load : float
@@ -247,6 +251,12 @@ class OperatingPoint:
         Heat unaccounted for, relative to the dissipation; THD only.
     shaft_temperature : float or None
         Of the journal's surface [K].
+    hot_radial_clearance : float or None
+        Clearance that the hot solids leave [m], `radial_clearance` being the cold one; with pads
+        their mean machined one. With thermal expansion only.
+    hot_preload : float or None
+        1 - (assembled clearance)/(machined clearance) when hot, the mean of the pads or of the
+        lobes.
     outlet_temperature : float or None
         Mean of the oil that leaves at both ends [K]: supply temperature plus the heat that the oil
         carries off over rho c_p times the side flow. THD with ``inlet = mixing`` only: otherwise
@@ -283,6 +293,8 @@ class OperatingPoint:
     heat_balance: HeatBalance | None = None
     heat_imbalance: float | None = None
     shaft_temperature: float | None = None
+    hot_radial_clearance: float | None = None
+    hot_preload: float | None = None
     outlet_temperature: float | None = None
     coefficient_frequency_ratio: float | None = None
     frequency_coefficients: FrequencyCoefficients | None = None
@@ -297,6 +309,12 @@ class OperatingPoint:
     def converged(self) -> bool:
         """Whether the numbers may be used."""
         return self.status is SolveStatus.CONVERGED
+
+    @property
+    def running_clearance(self) -> float:
+        """Radial clearance in which the journal runs, hot where it is known [m]."""
+        hot = self.hot_radial_clearance
+        return self.radial_clearance if hot is None else hot
 
     def _repr_html_(self) -> str:
         from .description import point_html

@@ -17,7 +17,7 @@ def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
     problem, state, q = solution.problem, solution.state, solution.state.displacement
     if not problem.bearing.pads:
         return ()
-    results, inlet = [], state.solution.inlet
+    results, inlet, hot = [], state.solution.inlet, problem.thermal.expansion is not None
     load = state.solution.pressure * state.operator.area * problem.mesh.multiplicity
     for number, frame in enumerate(pad_frames(problem.bearing, problem.mesh)):
         unknowns, columns = frame.unknowns, frame.columns
@@ -38,6 +38,8 @@ def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
                 inlet_temperature=entering,
                 inlet_fraction=1.0 if inlet is None else float(inlet[number]),
                 unloaded=unloaded,
+                hot_radial_clearance=frame.clearance if hot else None,
+                hot_preload=frame.preload if hot else None,
             )
         )
     return tuple(results)

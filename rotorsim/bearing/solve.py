@@ -17,8 +17,9 @@ from ..film.heat import HeatBalance, with_groove_oil
 from ..film.linearization import following_stiffness
 from ..film.losses import friction_force, journal_moment, peak, side_flow, supply_flow
 from ..film.pad_solution import solve_pads
-from ..film.solution import FilmSolution, WarmStart, solve_film
-from ..model import Case, Cavitation, InletModel, LoadTarget, ViscosityResponse
+from ..film.solution import FilmSolution, WallsOf, WarmStart, solve_film
+from ..film.walls import choose_walls
+from ..model import Bearing, Case, Cavitation, InletModel, LoadTarget, ViscosityResponse
 from ..model.entries import Quantity
 from ..model.operating import is_unloaded
 from ..status import SolveStatus
@@ -74,7 +75,7 @@ def solve_case(
     except InputError as error:
         raise InputError(error.message, key="speed", value=error.value or speed) from None
     try:
-        solution = _solution(case, speed, initial)
+        solution = solved_film(case, speed, initial)
     except NoFilmError as error:
         return failed_point(case, speed, str(error), SolveStatus.NO_EQUILIBRIUM), None
     except SingularFilmError as error:
@@ -84,19 +85,25 @@ def solve_case(
     return point, solution.warm_start if usable else None
 
 
-def _solution(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
-    """Solve from the first guess, and without it where that leads nowhere."""
+def solved_film(
+    case: Case, speed: float, initial: WarmStart | None = None, walls: WallsOf = choose_walls
+) -> FilmSolution:
+    """Solve from the first guess, and without it where that leads nowhere.
+
+    `walls` as in `rotorsim.film.solution.solve_film`.
+
+    Raises
+    ------
+    NoFilmError, SingularFilmError
+        There is no film.
+    """
+    solver = solve_pads if case.bearing.pads else solve_film
     if initial is not None:
         with suppress(NoFilmError, SingularFilmError):
-            solution = _film(case, speed, initial)
+            solution = solver(case, speed, initial=initial, walls=walls)
             if solution.status is SolveStatus.CONVERGED:
                 return solution
-    return _film(case, speed, None)
-
-
-def _film(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
-    solver = solve_pads if case.bearing.pads else solve_film
-    return solver(case, speed, initial=initial)
+    return solver(case, speed, walls=walls)
 
 
 def operating_point(
@@ -111,6 +118,7 @@ def operating_point(
         if not settled and status is SolveStatus.CONVERGED:
             status, message = SolveStatus.NOT_CONVERGED, "a displaced film did not converge"
     turn = rotation(solution.frame)
+    hot = None if case.thermal.expansion is None else problem.bearing
     dynamics = film_dynamics(solution, turn, following=following)
     stiffness, damping, frequency_ratio = dynamics.stated_coefficients()
     center = turn @ state.displacement[:2]
@@ -126,7 +134,7 @@ def operating_point(
     thinnest, pads = _min_film_thickness(solution), pad_results(solution)
     demand = tuple(float(needed) for needed in supply_flow(state, flow))
     numbers: dict[str, float] = {
-        "eccentricity_ratio": float(np.hypot(*center)) / clearance,
+        "eccentricity_ratio": float(np.hypot(*center)) / problem.bearing.radial_clearance,
         "attitude_angle": math.atan2(center[1], center[0]),
         "load": load,
         "sommerfeld_number": _ratio(
@@ -200,6 +208,8 @@ def operating_point(
         heat_balance=heat,
         heat_imbalance=None if heat is None else heat.imbalance,
         shaft_temperature=_shaft_temperature(solution),
+        hot_radial_clearance=None if hot is None else hot.radial_clearance,
+        hot_preload=None if hot is None else _mean_preload(hot),
         outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat, demand),
         fields=_fields(solution, fraction) if keep_fields else None,
     )  # fmt: skip
@@ -224,6 +234,13 @@ def _min_film_thickness(solution: FilmSolution) -> float:
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance - math.hypot(*state.displacement)
     return state.min_thickness
+
+
+def _mean_preload(bearing: Bearing) -> float:
+    """Mean preload of pads or lobes; 0 for a plain bore."""
+    preloads = [bearing.preload_of(pad) for pad in bearing.pads]
+    preloads = preloads or [arc.preload for arc in bearing.arcs]
+    return sum(preloads) / len(preloads) if preloads else 0.0
 
 
 def _ratio(above: float, below: float) -> float:

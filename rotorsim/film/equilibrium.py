@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .geometry import FilmGeometry
 from .linearization import stiffness_matrix
-from .problem import FilmState
+from .problem import FilmProblem, FilmState
 
 Array = NDArray[np.float64]
 
@@ -64,6 +64,10 @@ class PlainSearch:
         size = min(max(size, lowest * self.clearance), highest * self.clearance)
         return np.array([size, 0.0])
 
+    def grown(self, problem: FilmProblem) -> None:
+        """Go on in the clearance of `problem`."""
+        self.clearance = problem.bearing.radial_clearance
+
     def _at(self, xi: float) -> Array:
         lowest, highest = ECCENTRICITY_LIMITS
         eps = min(max(1.0 / (1.0 + math.exp(-xi)), lowest), highest)
@@ -109,6 +113,32 @@ class LoadSearch:
             return old
         return new if scale == 1.0 else old + scale * step
 
+    def grown(self, problem: FilmProblem) -> None:
+        """Go on in the clearance of `problem`."""
+        self.clearance, self.geometry = problem.bearing.radial_clearance, problem.geometry
+
+
+@dataclass
+class FixedRatio:
+    """Holds the journal of a plain film at an eccentricity ratio while the clearance changes."""
+
+    eccentricity_ratio: float
+    clearance: float
+    unreachable: bool = False
+
+    def __call__(self, state: FilmState) -> tuple[Array, float]:
+        """Return that position."""
+        del state
+        return np.array([self.eccentricity_ratio * self.clearance, 0.0]), 0.0
+
+    def allowed(self, _old: Array, _new: Array, /) -> Array:
+        """Return that position."""
+        return np.array([self.eccentricity_ratio * self.clearance, 0.0])
+
+    def grown(self, problem: FilmProblem) -> None:
+        """Go on in the clearance of `problem`."""
+        self.clearance = problem.bearing.radial_clearance
+
 
 @dataclass
 class Backtracking:
@@ -132,9 +162,10 @@ class Backtracking:
 
 @dataclass
 class AttitudeSearch:
-    """Attitude at a given eccentricity, so that the film carries a load along a given line."""
+    """Attitude at a given eccentricity ratio: the film carries a load along a given line."""
 
-    eccentricity: float
+    eccentricity_ratio: float
+    clearance: float
     load_angle: float
     """Direction of the load in the film frame [rad]."""
     unreachable: bool = False
@@ -147,7 +178,9 @@ class AttitudeSearch:
         if not size > 0.0:
             return self.at(angle - 0.2), 1.0
         stiffness = stiffness_matrix(state)
-        along = self.eccentricity * np.array([-math.sin(angle), math.cos(angle)])
+        along = (
+            self.eccentricity_ratio * self.clearance * np.array([-math.sin(angle), math.cos(angle)])
+        )
         turn = -stiffness @ along  # dF/d(angle)
         carried = math.atan2(-state.force[1], -state.force[0])
         direction = math.remainder(carried - self.load_angle, 2.0 * math.pi)
@@ -168,7 +201,12 @@ class AttitudeSearch:
 
     def at(self, angle: float) -> Array:
         """Return the position at an attitude angle [rad]."""
-        return self.eccentricity * np.array([math.cos(angle), math.sin(angle)])
+        size = self.eccentricity_ratio * self.clearance
+        return size * np.array([math.cos(angle), math.sin(angle)])
+
+    def grown(self, problem: FilmProblem) -> None:
+        """Go on in the clearance of `problem`."""
+        self.clearance = problem.bearing.radial_clearance
 
 
 def pressure_force(state: FilmState) -> float:

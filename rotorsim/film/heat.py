@@ -158,6 +158,10 @@ def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature:
     `_carry_over`).
     """
     thermal, mesh = problem.thermal, problem.mesh
+    if not thermal.supplied:
+        back = _leaving_temperature(energy, temperature)
+        result = np.full((4, *mesh.shape), back or thermal.supply_temperature)
+        return _mixed(problem, energy, temperature, result)
     result = np.full((4, *mesh.shape), thermal.supply_temperature)
     for number, groove in enumerate(problem.bearing.grooves):
         if groove.supply_temperature is None:
@@ -168,6 +172,17 @@ def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature:
     if thermal.inlet is InletModel.MIXING:
         return _mixed(problem, energy, temperature, result)
     return result
+
+
+def _leaving_temperature(energy: EnergyProblem, temperature: Array) -> float:
+    """Mean temperature of the oil that leaves the film at its ends and edges [K]; 0 without any."""
+    flow = heat = 0.0
+    for face, outward in ((EAST, 1.0), (SOUTH, -1.0), (NORTH, 1.0)):
+        open_ = _exits(energy) if face == EAST else ~energy.interior[face] & ~energy.fixed
+        out = np.maximum(outward * layer_fluxes(energy, face, open_), 0.0)
+        flow += float(out.sum())
+        heat += float(np.sum(out * temperature[open_]))
+    return heat / flow if flow > 0.0 else 0.0
 
 
 def _mixed(

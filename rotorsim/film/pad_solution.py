@@ -16,8 +16,9 @@ from .heat import Heat
 from .layers import LayerIntegrals, isoviscous_layers, layer_integrals
 from .pads import PadSearch
 from .problem import FilmProblem, FilmState, film_problem, film_state
-from .solution import FilmSolution, WarmStart
+from .solution import FilmSolution, WallsOf, WarmStart
 from .thd import ThermalFilm, solve_thermal_film, uniform_heat
+from .walls import choose_walls
 
 Array = NDArray[np.float64]
 
@@ -47,8 +48,16 @@ class _Cold:
         return self.off < _FORCE_TOLERANCE and self.state.solution.converged
 
 
-def solve_pads(case: Case, speed: float, *, initial: WarmStart | None = None) -> FilmSolution:
+def solve_pads(
+    case: Case,
+    speed: float,
+    *,
+    initial: WarmStart | None = None,
+    walls: WallsOf = choose_walls,
+) -> FilmSolution:
     """Solve the film of a tilting-pad bearing at `speed` [rad/s] and its equilibrium.
+
+    `walls` as in `solve_film`.
 
     Raises
     ------
@@ -65,9 +74,10 @@ def solve_pads(case: Case, speed: float, *, initial: WarmStart | None = None) ->
         )
     q, heat = search.first_guess(), None
     if initial is not None and initial.pads is not None and initial.pads.size == q.size - 2:
-        q, heat = np.array([*initial.position, *initial.pads]), initial.heat
+        relative = np.array([*initial.position, *initial.pads])
+        q, heat = problem.bearing.radial_clearance * relative, initial.heat
     if problem.is_thermal and heat is not None and heat.temperature.shape == _heat_shape(problem):
-        thermal = _thermal(search, search.settle(q, _warm_layers(problem, heat)), heat)
+        thermal = _thermal(search, search.settle(q, _warm_layers(problem, heat)), heat, walls)
         return _conclude(search, thermal.state, thermal, None)
     supply = float(case.lubricant.viscosity(case.thermal.supply_temperature))
     layers = isoviscous_layers(problem.mesh.shape, supply)
@@ -76,7 +86,7 @@ def solve_pads(case: Case, speed: float, *, initial: WarmStart | None = None) ->
         cold = _by_attitude(search, layers) or replace(cold, unreachable=True)
     if not problem.is_thermal or not cold.converged:
         return _conclude(search, cold.state, None, cold)
-    thermal = _thermal(search, cold.state.displacement, uniform_heat(problem))
+    thermal = _thermal(search, cold.state.displacement, uniform_heat(problem), walls)
     return _conclude(search, thermal.state, thermal, cold)
 
 
@@ -156,13 +166,14 @@ def _by_attitude(search: PadSearch, layers: LayerIntegrals) -> _Cold | None:
     return None
 
 
-def _thermal(search: PadSearch, q: Array, heat: Heat) -> ThermalFilm:
+def _thermal(search: PadSearch, q: Array, heat: Heat, walls: WallsOf) -> ThermalFilm:
     """Temperatures and equilibrium together, again where other pads turn out to be unloaded."""
     iterations, revisions = 0, 0
     while True:
         film = solve_thermal_film(
-            search.problem, q, initial=heat, move=search, force_tolerance=_THERMAL_FORCE_TOLERANCE
-        )
+            search.problem, q, initial=heat, move=search, walls=walls(search.problem),
+            force_tolerance=_THERMAL_FORCE_TOLERANCE,
+        )  # fmt: skip
         iterations, revisions = iterations + film.iterations, revisions + 1
         film = replace(film, iterations=iterations)
         q, heat = film.state.displacement, film.heat

@@ -31,6 +31,7 @@ from ..model.operating import is_unloaded
 from .banded import NoFilmError
 from .equilibrium import pressure_force
 from .geometry import CENTER, FilmGeometry, PadUnknowns, pad_unknowns
+from .growth import hot_problem
 from .layers import LayerIntegrals
 from .linearization import stiffness_matrix
 from .mesh import FilmMesh
@@ -245,6 +246,11 @@ class PadSearch:
                 q[frame.unknowns.pivot] = max(0.0, along - 0.9 * frame.clearance)
             q[frame.unknowns.tilt] = frame.level_tilt(q)
         return q
+
+    def grown(self, problem: FilmProblem) -> None:
+        """Go on in the clearances of `problem`."""
+        self.problem, self.whole = problem, hot_problem(self.whole, problem.bearing)
+        self.__dict__.pop("frames", None)
 
     # --- what Newton's method needs -------------------------------------------------------------
 

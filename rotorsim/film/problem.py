@@ -20,6 +20,7 @@ from ..model import (
 from .banded import NoFilmError
 from .flow_law import FlowLaw, flow_law
 from .geometry import CENTER, FilmGeometry, film_geometry
+from .growth import hot_clearances, with_clearances
 from .layers import LayerIntegrals
 from .mesh import FilmMesh, build_mesh
 from .operator import FaceTopology, FilmOperator, face_topology, film_operator
@@ -45,6 +46,8 @@ class FilmProblem:
     geometry : FilmGeometry
     flow_law : FlowLaw
     rupture : RuptureCondition
+    cold : Bearing
+        The bearing at the reference temperature of its expansion; `bearing` is the hot one.
     """
 
     bearing: Bearing
@@ -57,6 +60,7 @@ class FilmProblem:
     geometry: FilmGeometry
     flow_law: FlowLaw
     rupture: RuptureCondition
+    cold: Bearing
 
     @property
     def surface_speed(self) -> float:
@@ -116,8 +120,16 @@ class FilmState:
 def film_problem(
     case: Case, speed: float, bearing: Bearing, position: tuple[float, float]
 ) -> FilmProblem:
-    """Mesh and neighbourhoods of `bearing` (the case's, in the film frame) around `position`."""
+    """Mesh and neighbourhoods of `bearing` (the case's, in the film frame) around `position`.
+
+    With thermal expansion at supply temperature throughout.
+    """
     mesh = build_mesh(bearing, case.film, position)
+    cold, expansion = bearing, case.thermal.expansion
+    if expansion is not None:
+        supplied = case.thermal.supply_temperature
+        solids = np.array([[supplied, 0.0]] * (len(cold.pads) + 1))
+        bearing = with_clearances(cold, hot_clearances(cold, expansion, supplied, solids))
     supply = np.array([groove.supply_pressure for groove in bearing.grooves] or [0.0])
     return FilmProblem(
         bearing=bearing,
@@ -130,6 +142,7 @@ def film_problem(
         geometry=film_geometry(bearing, mesh),
         flow_law=flow_law("laminar"),
         rupture=rupture_condition(case.film.cavitation, _oil_supply(bearing, mesh, case.thermal)),
+        cold=cold,
     )
 
 

@@ -19,6 +19,7 @@ from .equilibrium import (
     ECCENTRICITY_LIMITS,
     AttitudeSearch,
     Backtracking,
+    FixedRatio,
     LoadSearch,
     PlainSearch,
 )
@@ -33,16 +34,21 @@ from .thd import (
     solve_thermal_film,
     uniform_heat,
 )
+from .walls import Walls, choose_walls
 
 Array = NDArray[np.float64]
 _Position = tuple[float, float]
-_Search = PlainSearch | LoadSearch | AttitudeSearch
+WallsOf = Callable[[FilmProblem], Walls]
+"""Makes the walls of a heated film's problem."""
+_Search = PlainSearch | LoadSearch | AttitudeSearch | FixedRatio
 
 _FORCE_TOLERANCE = 1e-8
 """Relative force residual at which the position counts as found."""
 _MAX_POSITION_STEPS = 60
 _PATIENCE = 12
 """Steps after which each must reduce the force residual."""
+_CLOSING = 0.6
+"""Hot over cold clearance below which a film that does not converge may seize."""
 _FRAME_TOLERANCE = 1e-3
 """Angle [rad] between a misaligned plain film's frame and its line of centres."""
 _MAX_MESHES = 8
@@ -56,12 +62,12 @@ class WarmStart:
     Attributes
     ----------
     position : tuple of float
-        Journal centre [m], load frame.
+        Journal centre over the radial clearance, load frame.
     heat : Heat or None
     full : (n, m) bool array
         Cells of full film.
     pads : array or None
-        Displacements of tilting pads, after the journal's.
+        Displacements of tilting pads, after the journal's, over the radial clearance.
     """
 
     position: _Position
@@ -103,11 +109,12 @@ class FilmSolution:
     @property
     def warm_start(self) -> WarmStart:
         """First guess for a neighbouring speed."""
+        relative = _relative(self.state)
         return WarmStart(
-            position=_turned(_pair(self.state.displacement), self.frame),
+            position=_turned(_pair(relative), self.frame),
             heat=self.thermal.heat if self.thermal is not None else None,
             full=self.state.solution.full,
-            pads=self.state.displacement[2:] if self.problem.bearing.pads else None,
+            pads=relative[2:] if self.problem.bearing.pads else None,
         )
 
 
@@ -127,30 +134,42 @@ class _Iterate:
         return self.thermal.heat if self.thermal is not None else None
 
 
-def solve_film(case: Case, speed: float, *, initial: WarmStart | None = None) -> FilmSolution:
-    """Solve the film of `case` at `speed` [rad/s], at its eccentricity ratio or under its load."""
+def solve_film(
+    case: Case,
+    speed: float,
+    *,
+    initial: WarmStart | None = None,
+    walls: WallsOf = choose_walls,
+) -> FilmSolution:
+    """Solve the film of `case` at `speed` [rad/s], at its eccentricity ratio or under its load.
+
+    `walls` makes the walls of a heated film's problem; by default the steady ones.
+    """
     if case.bearing.is_plain and case.bearing.is_symmetric:
-        return _solve_plain(case, speed, initial)
-    solution = _solve_general(case, speed, initial)
+        return _solve_plain(case, speed, initial, walls)
+    solution = _solve_general(case, speed, initial, walls)
     lost = (SolveStatus.STARVED, SolveStatus.NO_EQUILIBRIUM)
     if solution.thermal is None:
         lost = (*lost, SolveStatus.NOT_CONVERGED)
-    return _from_elsewhere(case, speed, solution) if solution.status in lost else solution
+    if solution.status in lost:
+        return _from_elsewhere(case, speed, solution, walls)
+    return solution
 
 
-def _from_elsewhere(case: Case, speed: float, failed: FilmSolution) -> FilmSolution:
+def _from_elsewhere(case: Case, speed: float, failed: FilmSolution, walls: WallsOf) -> FilmSolution:
     """Solve again from positions all over the clearance; `failed` if none leads to the load."""
     isothermal = replace(case, thermal=replace(case.thermal, model=ThermalModel.ISOTHERMAL))
     field = ForceField.of(case, speed)
     positions = first_positions(field)
     for position in positions:
-        warm = WarmStart(position, None, failed.state.solution.full[:0])
+        relative = _times(position, 1.0 / case.bearing.radial_clearance)
+        warm = WarmStart(relative, None, failed.state.solution.full[:0])
         with suppress(NoFilmError, SingularFilmError):
-            solution = _solve_general(isothermal, speed, warm)
+            solution = _solve_general(isothermal, speed, warm, walls)
             if solution.status is SolveStatus.CONVERGED:
                 if failed.thermal is None:
                     return solution
-                return _solve_general(case, speed, solution.warm_start)
+                return _solve_general(case, speed, solution.warm_start, walls)
     if not positions or not isinstance(case.target, LoadTarget):
         return failed
     if balances_somewhere(field, case.target.load) is not False:
@@ -176,33 +195,46 @@ def _no_position(failed: FilmSolution, case: Case) -> str:
     )
 
 
-def _solve_plain(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
+def _solve_plain(
+    case: Case, speed: float, initial: WarmStart | None, walls: WallsOf
+) -> FilmSolution:
     """Solve a plain, aligned film, with x along the line of centres."""
-    clearance, target = case.bearing.radial_clearance, case.target
+    cold, target = case.bearing.radial_clearance, case.target
     if isinstance(target, EccentricityTarget) or is_unloaded(target):
         eps = target.eccentricity_ratio if isinstance(target, EccentricityTarget) else 0.0
-        position = (eps * clearance, 0.0)
-        problem = film_problem(case, speed, case.bearing, position)
-        film = _iterate(problem, np.array(position), None, initial)
-        return _conclude(problem, film, _load_line(film.state), None, film.iterations)
-    eps = math.hypot(*initial.position) / clearance if initial else 0.5
-    warm, search, effort = initial, PlainSearch(target.load, clearance), _Effort()
+        problem = film_problem(case, speed, case.bearing, (eps * cold, 0.0))
+        clearance, held = problem.bearing.radial_clearance, None
+        if problem.is_thermal and case.thermal.expansion is not None:
+            held = FixedRatio(eps, clearance)
+        film = _iterate(problem, np.array([eps * clearance, 0.0]), held, initial, walls)
+        return _conclude(film, _load_line(film.state), None, film.iterations)
+    eps = math.hypot(*initial.position) if initial else 0.5
+    warm, search, effort = initial, PlainSearch(target.load, cold), _Effort()
     while True:
         level = _graded_eccentricity(eps)
-        problem = film_problem(case, speed, case.bearing, (level * clearance, 0.0))
+        problem = film_problem(case, speed, case.bearing, (level * cold, 0.0))
         search.unreachable = False
+        search.grown(problem)
+        displacement = np.array([eps * problem.bearing.radial_clearance, 0.0])
         if problem.is_thermal and warm is None:
-            warm = _cold_start(problem, np.array([eps * clearance, 0.0]), search)
-            eps = min(warm.position[0] / clearance, 0.9)
+            warm = _cold_start(problem, displacement, search)
+            eps = min(warm.position[0], 0.9)
             continue
         film = _iterate(
-            problem, np.array([eps * clearance, 0.0]), search, warm,
-            lambda q, level=level: effort.proceed(_graded_eccentricity(q[0] / clearance) == level),
+            problem, displacement, search, warm, walls,
+            lambda state, level=level: effort.proceed(
+                _graded_eccentricity(float(_relative(state)[0])) == level
+            ),
         )  # fmt: skip
-        eps = float(film.state.displacement[0]) / clearance
-        warm = WarmStart(_pair(film.state.displacement), film.heat, film.state.solution.full)
+        eps = float(_relative(film.state)[0])
+        warm = WarmStart(_pair(_relative(film.state)), film.heat, film.state.solution.full)
         if effort.ends(film) or search.unreachable:
-            return _conclude(problem, film, _load_line(film.state), search, effort.iterations)
+            return _conclude(film, _load_line(film.state), search, effort.iterations)
+
+
+def _relative(state: FilmState) -> Array:
+    """Return the displacements over the (hot) radial clearance, (q,)."""
+    return state.displacement / state.problem.bearing.radial_clearance
 
 
 @dataclass
@@ -233,7 +265,8 @@ def _cold_start(problem: FilmProblem, displacement: Array, search: _Search) -> W
     """Return the isothermal film's position, at which a thermal search begins."""
     cold = _iterate_isothermal(problem, displacement, search, None, lambda _: False)
     displacement = cold.state.displacement if cold.converged else displacement
-    return WarmStart(_pair(displacement), None, cold.state.solution.full)
+    relative = displacement / problem.bearing.radial_clearance
+    return WarmStart(_pair(relative), None, cold.state.solution.full)
 
 
 def _graded_eccentricity(eps: float) -> float:
@@ -249,35 +282,45 @@ def _load_line(state: FilmState) -> float:
     return -math.atan2(-state.force[1], -state.force[0])
 
 
-def _solve_general(case: Case, speed: float, initial: WarmStart | None) -> FilmSolution:
-    """Solve any other film, in the load frame; a misaligned plain one along its line of centres."""
-    position = initial.position if initial else _first_position(case)
+def _solve_general(
+    case: Case, speed: float, initial: WarmStart | None, walls: WallsOf
+) -> FilmSolution:
+    """Solve any other film, in the load frame; a misaligned plain one along its line of centres.
+
+    Positions are over the clearance, cold or hot.
+    """
+    cold, position = case.bearing.radial_clearance, _first_position(case)
+    if initial is not None:
+        position = initial.position
     warm, effort = initial, _Effort()
     while True:
         frame = _frame_angle(case.bearing, position)
         bearing = case.bearing.turned(-frame)
         local = _turned(position, -frame)
-        level = _graded_position(bearing, local)
+        level = _graded_position(bearing, _times(local, cold))
         problem = film_problem(case, speed, bearing, level)
         search = _search(case, problem, frame)
-        local = _inside(problem, search, local)
+        local = _inside(problem, search, _times(local, problem.bearing.radial_clearance))
         if problem.is_thermal and warm is None:
             warm = _cold_start(problem, np.array(local), search)
             position = _turned(warm.position, frame)
             continue
 
-        def own_mesh(q: Array, bearing: Bearing = bearing, level: _Position = level) -> bool:
-            turn = _frame_angle(case.bearing, _pair(q))
-            own = _graded_position(bearing, _pair(q)) == level
+        def own_mesh(
+            state: FilmState, bearing: Bearing = bearing, level: _Position = level
+        ) -> bool:
+            place = _times(_pair(_relative(state)), cold)
+            turn = _frame_angle(case.bearing, place)
+            own = _graded_position(bearing, place) == level
             return effort.proceed(own and abs(turn) < 10.0 * _FRAME_TOLERANCE)
 
-        film = _iterate(problem, np.array(local), search, warm, own_mesh)
-        local = _pair(film.state.displacement)
+        film = _iterate(problem, np.array(local), search, warm, walls, own_mesh)
+        local = _pair(_relative(film.state))
         position = _turned(local, frame)
         warm = WarmStart(position, film.heat, film.state.solution.full)
         turn = _frame_angle(case.bearing, local)
         if effort.ends(film, moved=abs(turn) > _FRAME_TOLERANCE) or search.unreachable:
-            return _conclude(problem, film, frame, search, effort.iterations)
+            return _conclude(film, frame, search, effort.iterations)
 
 
 def _inside(problem: FilmProblem, search: _Search, position: _Position) -> _Position:
@@ -295,9 +338,9 @@ def _inside(problem: FilmProblem, search: _Search, position: _Position) -> _Posi
 
 
 def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | AttitudeSearch:
-    clearance = case.bearing.radial_clearance
+    clearance = problem.bearing.radial_clearance
     if isinstance(case.target, EccentricityTarget):
-        return AttitudeSearch(case.target.eccentricity_ratio * clearance, -frame)
+        return AttitudeSearch(case.target.eccentricity_ratio, clearance, -frame)
     load = case.target.load * np.array([math.cos(frame), -math.sin(frame)])
     return LoadSearch(load, clearance, problem.geometry)
 
@@ -309,8 +352,7 @@ def _first_position(case: Case) -> _Position:
     preload = max((arc.preload for arc in case.bearing.arcs), default=0.0)
     if isinstance(case.target, LoadTarget):
         eps *= 1.0 - preload
-    size = eps * case.bearing.radial_clearance
-    return size * math.cos(0.8), size * math.sin(0.8)
+    return eps * math.cos(0.8), eps * math.sin(0.8)
 
 
 def _frame_angle(bearing: Bearing, position: _Position) -> float:
@@ -330,6 +372,10 @@ def _pair(displacement: Array) -> _Position:
     return float(displacement[0]), float(displacement[1])
 
 
+def _times(position: _Position, factor: float) -> _Position:
+    return factor * position[0], factor * position[1]
+
+
 def _turned(position: _Position, angle: float) -> _Position:
     cos, sin = math.cos(angle), math.sin(angle)
     return position[0] * cos - position[1] * sin, position[0] * sin + position[1] * cos
@@ -340,7 +386,8 @@ def _iterate(
     displacement: Array,
     search: _Search | None,
     initial: WarmStart | None,
-    proceed: Callable[[Array], bool] | None = None,
+    walls: WallsOf,
+    proceed: Callable[[FilmState], bool] | None = None,
 ) -> _Iterate:
     if not problem.is_thermal:
         return _iterate_isothermal(problem, displacement, search, initial, proceed)
@@ -353,6 +400,7 @@ def _iterate(
         displacement,
         initial=heat,
         move=search,
+        walls=walls(problem),
         force_tolerance=10.0 * _FORCE_TOLERANCE,
         proceed=proceed,
     )
@@ -364,7 +412,7 @@ def _iterate_isothermal(
     displacement: Array,
     search: _Search | None,
     initial: WarmStart | None,
-    proceed: Callable[[Array], bool] | None = None,
+    proceed: Callable[[FilmState], bool] | None = None,
 ) -> _Iterate:
     """Iterate the position of a film of the supply temperature's viscosity."""
     viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
@@ -380,7 +428,7 @@ def _iterate_isothermal(
         following, off = search(state)
         stuck = stuck + 1 if search.unreachable else 0
         if proceed is not None and off < ROUGH_TOLERANCE:
-            if not proceed(state.displacement):
+            if not proceed(state):
                 return _Iterate(state, None, state.solution.converged, step, off)
             proceed = None
         if off < _FORCE_TOLERANCE or stuck >= 4 or step == _MAX_POSITION_STEPS:
@@ -395,9 +443,10 @@ def _iterate_isothermal(
 
 
 def _conclude(
-    problem: FilmProblem, film: _Iterate, frame: float, search: _Search | None, iterations: int
+    film: _Iterate, frame: float, search: _Search | None, iterations: int
 ) -> FilmSolution:
     """Map the last iterate to a `SolveStatus` with its message."""
+    problem = film.state.problem
     status, message = SolveStatus.CONVERGED, ""
     solution = film.state.solution
     concentric = not film.state.displacement[:2].any() and problem.bearing.is_plain
@@ -426,6 +475,9 @@ def _conclude(
     elif not film.converged:
         status = SolveStatus.NOT_CONVERGED
         cause = film.thermal.cause if film.thermal else f"the residual is {film.residual:.1e}"
+        left = problem.bearing.radial_clearance / problem.cold.radial_clearance
+        if left < _CLOSING:
+            cause += f", and hot solids leave {left:.0%} of the clearance: it may seize"
         message = (
             f"stopped after {iterations} iterations: {cause}; the numbers are the last iterate. "
             'Try a neighbouring speed first, inception = "max_film", or a lower load'

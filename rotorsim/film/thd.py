@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 from ..model import InletModel
 from .anderson import AndersonMixer
 from .energy import EnergyProblem, WallTemperatures, march
+from .growth import Growth
 from .heat import (
     Heat,
     HeatBalance,
@@ -135,6 +136,10 @@ class _Move(Protocol):
         """Pull a mixed step back to where a film can be."""
         ...
 
+    def grown(self, problem: FilmProblem, /) -> None:
+        """Go on in the clearance of `problem`."""
+        ...
+
 
 def uniform_heat(problem: FilmProblem) -> Heat:
     """Return the film at supply temperature throughout, between its walls."""
@@ -150,8 +155,9 @@ def solve_thermal_film(
     *,
     initial: Heat | None = None,
     move: _Move | None = None,
+    walls: Walls | None = None,
     full: Flags | None = None,
-    proceed: Callable[[Array], bool] | None = None,
+    proceed: Callable[[FilmState], bool] | None = None,
     force_tolerance: float = 1e-7,
     tolerance: float = _TOLERANCE,
     max_iterations: int = _MAX_ITERATIONS,
@@ -166,10 +172,12 @@ def solve_thermal_film(
         A neighbouring solution.
     move : callable, optional
         Gives the next displacements; called once an iteration.
+    walls : Walls, optional
+        By default the steady ones of the problem's settings.
     full : (n, m) bool array, optional
         The full cells, taken as given throughout.
     proceed : callable, optional
-        Called once, when both residuals fall below `ROUGH_TOLERANCE`, with the displacements.
+        Called once, when both residuals fall below `ROUGH_TOLERANCE`.
         Return False to get the rough solution back (`converged` False), as for a mesh graded anew.
     tolerance : float
         Of the change of log viscosity; the other tolerances stay.
@@ -180,7 +188,11 @@ def solve_thermal_film(
         With `converged` False and a `cause` if `max_iterations` did not suffice.
     """
     heat = uniform_heat(problem) if initial is None else initial
-    scales, walls = problem.geometry.displacements.scales, choose_walls(problem)
+    scales, walls = problem.geometry.displacements.scales, walls or choose_walls(problem)
+    expansion, growth = problem.thermal.expansion, None
+    if expansion is not None:
+        growth = Growth(problem.cold, expansion)
+        problem, displacement = _grown(growth, problem, displacement, heat, walls, move)
     mixer = AndersonMixer(heat.temperature.size + heat.bush.size + 1 + scales.size)
     progress, leaving = _Progress(kept=full, given=full is not None), None
     while True:
@@ -192,8 +204,10 @@ def solve_thermal_film(
             mixer.forget()
         stop = False
         if proceed is not None and max(step.residual, off) < ROUGH_TOLERANCE:
-            stop, proceed = not proceed(step.state.displacement), None
+            stop, proceed = not proceed(step.state), None
         cause = _unsettled(step.residual, tolerance, off, force_tolerance)
+        if growth is not None and growth.lagging:
+            cause = "the clearance still changes"
         balance = None
         if not (cause or stop):
             balance = _balance(problem, walls, heat, step)
@@ -211,12 +225,38 @@ def solve_thermal_film(
             _packed(heat, displacement / scales), _packed(step.mapped, target / scales)
         )
         heat, relative = _unpacked(mixed, heat, scales.size)
+        if growth is not None:
+            problem, displacement = _grown(growth, problem, displacement, heat, walls, move)
+            if growth.lagging:
+                mixer.forget()
+            if move is not None:
+                scales = problem.geometry.displacements.scales
         if move is not None:
             following = relative * scales
             allowed = move.allowed(displacement, following)
             if not np.array_equal(allowed, following):
                 mixer.forget()
             displacement = allowed
+
+
+def _grown(
+    growth: Growth,
+    problem: FilmProblem,
+    displacement: Array,
+    heat: Heat,
+    walls: Walls,
+    move: _Move | None,
+) -> tuple[FilmProblem, Array]:
+    """Return problem and displacements in the clearance of `heat`.
+
+    Where a search moves the journal, its eccentricity ratio stays: so it touches nothing.
+    """
+    hot = growth(problem, heat, walls)
+    if move is not None:
+        move.grown(hot)
+        ratio = hot.geometry.displacements.scales / problem.geometry.displacements.scales
+        displacement = displacement * ratio
+    return hot, displacement
 
 
 @dataclass(frozen=True)

@@ -110,6 +110,13 @@ class _Wall(ABC):
         """Return how the heat follows a change of the surface temperature [W/K], estimated."""
         return 0.0
 
+    def bodies(self, temperature: Array, /) -> Array:
+        """Return mean temperature [K] and dT/dr [K/m] of the solid, or of each pad, (solids, 2).
+
+        Without a field of its own a solid has the mean temperature of its surface.
+        """
+        return np.array([[float(np.mean(temperature)), 0.0]])
+
 
 @dataclass(frozen=True)
 class _FixedWall(_Wall):
@@ -212,6 +219,11 @@ class _ConductingBush(_Wall):
         conductance = float(self.exchange(contact).sum()) / float(contact.area.sum())
         return _conducted(self.operator, temperature, flux, conductance, self.ambient)
 
+    def bodies(self, temperature: Array, /) -> Array:
+        """Return mean temperature and gradient of the bush."""
+        mean, gradient = self.operator.body(temperature - self.ambient)
+        return np.array([[self.ambient + mean, gradient]])
+
     def exchange(self, contact: FilmContact, /) -> Array:
         """Return `nusselt` times k A/h of every cell, at most what the first half layer passes."""
         return min(self.nusselt, 2.0 * contact.layers) * contact.bulk
@@ -268,6 +280,14 @@ class _ConductingPads(_Wall):
             )
         return result
 
+    def bodies(self, temperature: Array, /) -> Array:
+        """Return mean temperature and gradient of each pad."""
+        values = [
+            operator.body(temperature[own] - self.ambient)
+            for own, operator in zip(self.columns, self.operators, strict=True)
+        ]
+        return np.array([[self.ambient, 0.0]]) + np.array(values)
+
     def exchange(self, contact: FilmContact, /) -> Array:
         """Return 2 k A/h of every cell."""
         return 2.0 * contact.bulk
@@ -295,10 +315,35 @@ def _conducting(problem: FilmProblem) -> _Wall:
 
 @dataclass(frozen=True)
 class Walls:
-    """Both walls of a film."""
+    """Both walls of a film.
+
+    Attributes
+    ----------
+    bush, shaft
+    pads : tuple of (n,) bool arrays
+        Cells of each pad; empty for a bore.
+    ring : float
+        Temperature of what the pads stand in [K].
+    """
 
     bush: _Wall
     shaft: _Wall
+    pads: tuple[NDArray[np.bool_], ...] = ()
+    ring: float = 0.0
+
+    def bodies(self, bush: Array) -> Array:
+        """Return mean temperature [K] and dT/dr [K/m] of bush, or of every pad and their ring."""
+        if not self.pads:
+            return self.bush.bodies(bush)
+        if isinstance(self.bush, _ConductingPads):
+            pads = self.bush.bodies(bush)
+        else:
+            pads = np.concatenate([self.bush.bodies(bush[own]) for own in self.pads])
+        return np.concatenate([pads, [[self.ring, 0.0]]])
+
+    def shaft_body(self, surface: float) -> float:
+        """Return the mean temperature of the journal [K]."""
+        return float(self.shaft.bodies(np.array(surface))[0, 0])
 
 
 _BUSHES: dict[BushModel, Callable[[FilmProblem], _Wall]] = {
@@ -321,5 +366,10 @@ def choose_walls(problem: FilmProblem) -> Walls:
     InputError
         The bush conducts and the bearing has no `bush_outer_radius`.
     """
-    thermal = problem.thermal
-    return Walls(_BUSHES[thermal.bush](problem), _SHAFTS[thermal.shaft](problem))
+    thermal, region = problem.thermal, problem.mesh.region
+    return Walls(
+        _BUSHES[thermal.bush](problem),
+        _SHAFTS[thermal.shaft](problem),
+        tuple(region == number for number in range(len(problem.bearing.pads))),
+        thermal.ambient_temperature,
+    )

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..errors import InputError
 from .bearing import Bearing
+from .expansion import BushFit, HousingFit
 from .lubricant import Lubricant
 from .operating import EccentricityTarget, LoadTarget, Target, is_unloaded
 from .settings import Cavitation, FilmSettings, Inception, ThermalSettings
@@ -34,9 +35,29 @@ class Case:
             said = "must lie between 0 and 1, 1 excluded"
         if is_unloaded(target):
             said = _centred(bearing, self.film, key)
+        _check_fit(bearing, self.thermal)
         if said:
             value = target.load if isinstance(target, LoadTarget) else target.eccentricity_ratio
             raise InputError(said, key=f"operating.{key}", value=value)
+
+
+def _check_fit(bearing: Bearing, thermal: ThermalSettings) -> None:
+    """Refuse a housing that holds a bush of unknown size, or a spring for a ring of pivots."""
+    if thermal.expansion is None or thermal.expansion.bush_fit is BushFit.FREE:
+        return
+    if bearing.pads:
+        if isinstance(thermal.expansion.bush_fit, HousingFit):
+            raise InputError(
+                'with tilting pads must be "free" or "rigid_housing": the ring that holds the '
+                "pivots",
+                key="thermal.expansion.bush_fit",
+            )
+    elif bearing.bush_outer_radius is None:
+        raise InputError(
+            "is missing: a bush that its housing holds needs it; write for example "
+            f'bush_outer_radius = "{1.5e3 * bearing.journal_radius:g} mm"',
+            key="bearing.bush_outer_radius",
+        )
 
 
 def _centred(bearing: Bearing, film: FilmSettings, key: str) -> str:

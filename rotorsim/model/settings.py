@@ -21,6 +21,7 @@ from .entries import (
     check,
     nearest,
 )
+from .expansion import Expansion
 
 _MAX_RATIOS = 64
 """Frequency ratios at which K and C are given besides."""
@@ -177,6 +178,8 @@ class ThermalSettings:
     bush_heat_transfer : Convection to the surroundings outside and at both ends [W/(m2 K)].
     hot_oil_carry_over : With ``inlet = mixing``: part of the oil arriving at a groove that enters
         the next film, 0 to 1; fresh oil replaces the rest.
+    expansion : Thermal growth of journal, bush and pads; None: the clearance stays as it is given.
+    supplied : False: the supply is lost; where oil is missing, what has left comes back uncooled.
     """
 
     model: Annotated[ThermalModel, Key("models"), SEVERAL] = ThermalModel.THD
@@ -191,6 +194,8 @@ class ThermalSettings:
         float, Quantity("heat transfer coefficient", None, "not_negative")
     ] = 80.0
     hot_oil_carry_over: Share = 1.0
+    expansion: Expansion | None = None
+    supplied: Annotated[bool, NOT_IN_FILES] = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.shaft, str):

@@ -91,8 +91,8 @@ class SolvedFilmForce:
         return self.bearing.radial_clearance
 
     @classmethod
-    def of(cls, case: Case, solution: FilmSolution) -> SolvedFilmForce:
-        """Force of the film that was solved for `case`, its viscosity field kept."""
+    def of(cls, solution: FilmSolution) -> SolvedFilmForce:
+        """Force of the solved film, its viscosity field and its clearance kept."""
         mesh = solution.problem.mesh
         # All pads move, those without load as well.
         geometry = film_geometry(solution.problem.bearing, mesh)
@@ -103,7 +103,7 @@ class SolvedFilmForce:
             problem=replace(solution.problem, mesh=mesh, geometry=geometry),
             layers=solution.state.layers,
             frame=solution.frame,
-            bearing=case.bearing,
+            bearing=solution.problem.bearing.turned(solution.frame),
             rest=solution.state.displacement,
             name="film" if solution.thermal is None else "film_frozen_viscosity",
         )
@@ -207,6 +207,7 @@ def can_be_mapped(case: Case) -> bool:
         case.bearing.is_plain
         and case.bearing.is_symmetric
         and case.thermal.model is ThermalModel.ISOTHERMAL
+        and case.thermal.expansion is None
         and case.film.cavitation in MAPPED
         and case.film.inception is Inception.FREE
     )
@@ -266,7 +267,8 @@ def loaded_film(
         )
     if solution.problem.mesh.slot.any():
         notes.append(f"p = 0 held where the film is thickest at {rpm}")
-    return LoadedFilm(SolvedFilmForce.of(case, solution), load, case.bearing, "; ".join(notes))
+    force = SolvedFilmForce.of(solution)
+    return LoadedFilm(force, load, force.bearing, "; ".join(notes))
 
 
 def _check_inertia(bearing: Bearing) -> None:

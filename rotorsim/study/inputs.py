@@ -155,6 +155,17 @@ def _film(scenario: Scenario) -> _Rows:
     ]
     if thermal.shaft_temperature is not None and thermal.shaft is not ShaftModel.AMBIENT:
         rows.append(Row("shaft temperature", _celsius(thermal.shaft_temperature)))
+    growth = thermal.expansion
+    if growth is not None:
+        stiffness = getattr(growth.bush_fit, "stiffness", None)
+        held = str(growth.bush_fit).replace("_", " ")
+        if stiffness is not None:
+            held = f"housing of {number(stiffness / 1e6)} MN/m"
+        rows += [
+            Row("expansion of shaft, bush", f"{growth.shaft:.3g}, {growth.bush:.3g} 1/K"),
+            Row("clearances measured at", _celsius(growth.reference_temperature)),
+            Row("fit of the bush", held),
+        ]
     if thermal.bush is BushModel.CONDUCTION:
         rows += [
             Row("bush conductivity", f"{number(thermal.bush_conductivity)} W/(m K)"),

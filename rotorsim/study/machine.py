@@ -530,7 +530,7 @@ class _Film:
 
 def _journal_of(point: OperatingPoint, load: Array) -> Array:
     """Displacement of the journal under a load [N] in the machine's frame [m]."""
-    angle, size = point.attitude_angle, point.eccentricity_ratio * point.radial_clearance
+    angle, size = point.attitude_angle, point.eccentricity_ratio * point.running_clearance
     place = size * np.array([math.cos(angle), math.sin(angle)])
     return np.asarray(rotation(math.atan2(load[1], load[0])) @ place, dtype=float)
 

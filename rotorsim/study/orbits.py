@@ -272,7 +272,8 @@ def _static_position(
 
     usable = one.converged.ravel()
     curve = one.dataset.squeeze(list(one.choices))
-    eccentricity = curve["eccentricity_ratio"].values * clearance
+    hot = curve["hot_radial_clearance"].values if "hot_radial_clearance" in curve else np.nan
+    eccentricity = curve["eccentricity_ratio"].values * np.where(np.isnan(hot), clearance, hot)
     angle = curve["attitude_angle"].values
     places = np.column_stack([eccentricity * np.cos(angle), eccentricity * np.sin(angle)])[usable]
     if len(places) == 1:
@@ -356,9 +357,9 @@ def film_at_rest(point: OperatingPoint, bearing: Bearing) -> FilmFrame:
         temperature=mean if warm else None,
         max_temperature=point.max_temperature if warm else None,
         journal_radius=bearing.journal_radius,
-        radial_clearance=point.radial_clearance,
+        radial_clearance=point.running_clearance,
         centre=point.eccentricity_ratio
-        * point.radial_clearance
+        * point.running_clearance
         * np.array([np.cos(angle), np.sin(angle)]),
         bearing=bearing if bearing.pads else None,
         tilts=tuple(pad.tilt for pad in point.pads),
@@ -379,7 +380,7 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
         scenario.case(orbit_settings(scenario)[0].radial_clearance, orbit.thermal_model)
     )
     solution = operating_film(case, float(np.abs(orbit.speed).max()))
-    force, mesh = SolvedFilmForce.of(case, solution), solution.problem.mesh
+    force, mesh = SolvedFilmForce.of(solution), solution.problem.mesh
     temperature, hottest = _temperature(solution)
     places, rates = orbit.film_motion
     unknowns = pad_unknowns(case.bearing)[1]
@@ -399,7 +400,7 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
                 temperature=temperature,
                 max_temperature=hottest,
                 journal_radius=case.bearing.journal_radius,
-                radial_clearance=case.bearing.radial_clearance,
+                radial_clearance=force.radial_clearance,
                 centre=np.array([orbit.x[row], orbit.y[row]]),
                 time=float(orbit.t[row]),
                 bearing=case.bearing if unknowns else None,

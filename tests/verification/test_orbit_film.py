@@ -317,7 +317,7 @@ def test_force_has_no_jumps():
         LoadTarget(800.0), length_to_diameter=1.0, mesh=(48, 8), viscosity=VISCOSITY,
         inception="max_film", radius=RADIUS, clearance=CLEARANCE,
     )  # fmt: skip
-    force = SolvedFilmForce.of(film, solve_film(film, speed))
+    force = SolvedFilmForce.of(solve_film(film, speed))
     share = np.linspace(0.0, 1.0, 801)[:, None]
     start, end = np.array([-0.126, -0.279, 0.09, -0.06]), np.array([-0.126, -0.279, 0.19, -0.16])
     motion = (start + share * (end - start)) * CLEARANCE

@@ -114,7 +114,7 @@ def bearing_drawing(
     film, radius = _fields(point), journal_radius
     ax = axes_or_new(ax, (5.2, 4.6))
     middle = int(np.abs(film.y).argmin())
-    clearance = point.radial_clearance
+    clearance = point.running_clearance
     magnified = 0.24 * radius / clearance
     eccentricity = magnified * clearance * point.eccentricity_ratio
     centre = eccentricity * np.array([np.cos(point.attitude_angle), np.sin(point.attitude_angle)])

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 _POINT = (
     "speed", "eccentricity_ratio", "attitude_angle", "load", "sommerfeld_number",
     "min_film_thickness", "max_pressure", "max_temperature", "mean_temperature",
-    "outlet_temperature", "friction_force", "power_loss", "side_flow", "wall_heat_share",
-    "critical_mass",
+    "shaft_temperature", "hot_radial_clearance", "outlet_temperature", "friction_force",
+    "power_loss", "side_flow", "wall_heat_share", "critical_mass",
 )  # fmt: skip
 _AT_TOP = (
     "radial_clearance", "eccentricity_ratio", "attitude_angle", "load", "min_film_thickness",
