@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import Annotated
 
 from .entries import Quantity, Stiffness, Temperature, check
-from .pivots import POISSON_RATIO, YOUNGS_MODULUS, Modulus, Poisson
+from .pads import POISSON_RATIO, YOUNGS_MODULUS, Modulus, Poisson
 
 Coefficient = Annotated[
     float, Quantity("thermal expansion", "11.7e-6 / delta_degC", "not_negative")
