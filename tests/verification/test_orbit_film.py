@@ -44,7 +44,7 @@ def case(load: float = 1500.0, mesh=(156, 48), **changes):
 def solved(film) -> LoadedFilm:
     """The same film without a map."""
     solution = solve_film(film, SPEED)
-    force = SolvedFilmForce.of(film, solution)
+    force = SolvedFilmForce.of(solution)
     return LoadedFilm(force, float(np.hypot(*solution.state.force)), film.bearing, "")
 
 
