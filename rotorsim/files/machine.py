@@ -16,7 +16,7 @@ from typing import Annotated, Any
 from ..arguments import above_zero
 from ..bearing.table import CoefficientTable
 from ..errors import InputError, ScenarioError
-from ..model.entries import NOT_IN_FILES, Example, Made, Quantity, one_of
+from ..model.entries import NOT_IN_FILES, Example, Made, Number, Quantity, one_of
 from ..model.machine import (
     Clearance,
     LateralSettings,
@@ -34,6 +34,7 @@ from ..model.machine import (
 from ..model.shaft import (
     STEEL,
     Bore,
+    Coupling,
     Density,
     Diameter,
     Disc,
@@ -106,6 +107,7 @@ def _beam(
     rotation: str = _ROTATIONS[0],
     shear: bool = True,
     axial_force: Annotated[float, Quantity("force", "0 N", "any")] = 0.0,
+    modal_damping: Annotated[float, Number(least=0.0, most=0.999)] = 0.0,
 ) -> RotorDrawing:
     """Make a shaft from its sections and discs."""
     try:
@@ -114,7 +116,7 @@ def _beam(
         raise InputError(error.message, key="rotation", value=rotation) from None
     beam = Beam(
         section, disc, Material(youngs_modulus, density, poisson_ratio, shear_modulus), shear,
-        axial_force, internal_damping, rotation == _ROTATIONS[0],
+        axial_force, internal_damping, rotation == _ROTATIONS[0], modal_damping=modal_damping,
     )  # fmt: skip
     for entry in unbalance:
         beam.check_place(entry.at, "rotor.unbalance.at")
@@ -155,6 +157,7 @@ class MachineFile:
     title: Annotated[str, TitleEntry()] = ""
     support: tuple[SupportEntry, ...] = ()
     seal: tuple[SealEntry, ...] = ()
+    coupling: tuple[Coupling, ...] = ()
     probe: tuple[Probe, ...] = ()
     load: tuple[StaticForce, ...] = ()
     clearance: tuple[Clearance, ...] = ()
@@ -166,7 +169,8 @@ class MachineFile:
     text: Annotated[str, NOT_IN_FILES] = field(default="", repr=False)
 
     def __post_init__(self) -> None:
-        beam = self.rotor.beam
+        beam = replace(self.rotor.beam, couplings=self.coupling)
+        object.__setattr__(self, "rotor", replace(self.rotor, beam=beam))
         for word in ("support", "seal", "probe", "load", "clearance"):
             for i, entry in enumerate(getattr(self, word)):
                 beam.check_place(entry.at, f"{word}[{i}].at")

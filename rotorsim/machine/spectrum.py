@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from .banded import BandForm
 from .machine import Machine
+from .matrices import first_order
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -28,6 +30,7 @@ _SHIFT = 3e-4
 """Of the highest frequency: the least shift."""
 _CONVERGED = 1e-11
 """Relative residual of a Ritz value that counts as converged."""
+_SINGULAR = 1e14
 _NEWTON_STEPS = 30
 _SELF_ADJOINT = 1e-7
 """Relative residual below which a right eigenvector is the left one too."""
@@ -100,12 +103,33 @@ class MachineSpectrum:
     def __call__(self, speed: float, /) -> Eigenmodes | None:
         """Modes at one speed [rad/s]."""
         if self.complete:
-            found = MatrixSpectrum(self.machine.state_matrix, self.machine.size)(speed)
+            found = _every_mode(*self.machine.matrices(speed))
         else:
             found = lowest_eigenmodes(self.machine, self.count, speed)
         if found is None or not self.machine.frequency_dependent:
             return found
         return _at_their_frequencies(self.machine, speed, found)
+
+
+def _every_mode(mass: Array, damping: Array, stiffness: Array) -> Eigenmodes | None:
+    """All modes; unknowns without mass and damping follow the others statically."""
+    if not (np.all(np.isfinite(stiffness)) and np.all(np.isfinite(damping))):
+        return None
+    acting = (mass != 0.0) | (damping != 0.0)
+    idle = ~(acting.any(axis=0) | acting.any(axis=1))
+    follow = np.eye(idle.size)[:, ~idle]
+    if idle.any():
+        own = stiffness[idle][:, idle]
+        if np.linalg.cond(own) > _SINGULAR:
+            raise InputError(
+                "singular: a node without mass, damping and stiffness is not held; give it a mass",
+                key="stiffness",
+            )
+        follow[idle] = -np.linalg.solve(own, stiffness[idle][:, ~idle])
+        # K may have cross terms: the idle rows vanish, so that only the others' rows are left.
+        mass, damping, stiffness = (part[~idle] @ follow for part in (mass, damping, stiffness))
+    found = all_eigenmodes(first_order(mass, damping, stiffness)[0], mass.shape[0])
+    return replace(found, shapes=_of_unit_length(found.shapes @ follow.T)) if idle.any() else found
 
 
 def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:

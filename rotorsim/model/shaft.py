@@ -8,7 +8,7 @@ from typing import Annotated
 
 from ..arguments import above_zero, not_negative
 from ..errors import InputError
-from .entries import Length, Number, Quantity
+from .entries import Example, Length, Number, Quantity
 
 Modulus = Annotated[float, Quantity("modulus", "207 GPa")]
 Density = Annotated[float, Quantity("density", "7830 kg/m^3", "not_negative")]
@@ -118,6 +118,30 @@ class Section:
         """Inner diameter at the right end [m]."""
         right = self.inner_diameter_right
         return self.inner_diameter if right is None else right
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A flexible coupling: the shaft is cut at one place and its ends joined by springs.
+
+    Half of its mass moves with either end; what stands at the place of the cut stands on the left
+    end.
+
+    at : [m]
+    stiffness : Against a lateral offset of the two ends [N/m].
+    angular_stiffness : Against an angle between them [N m/rad].
+    mass : [kg]
+    """
+
+    at: Annotated[Place, Example("2.1 m")]
+    stiffness: Annotated[float, Quantity("stiffness", "200 MN/m")]
+    angular_stiffness: Annotated[float, Quantity("moment", "50 kN*m")]
+    mass: Annotated[float, Quantity("mass", "20 kg", "not_negative")] = 0.0
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        above_zero("coupling", stiffness=self.stiffness, angular_stiffness=self.angular_stiffness)
+        not_negative("coupling", mass=self.mass)
 
 
 @dataclass(frozen=True)

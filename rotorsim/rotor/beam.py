@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..model.shaft import STEEL, Disc, Material, Section
+from ..model.shaft import STEEL, Coupling, Disc, Material, Section
 from ..threads import on_one_blas_thread
 from .rotor import Node, Rotor
 
@@ -40,6 +40,7 @@ class Beam:
     internal_damping : Viscous and rotating: force -b K_s (dr/dt - i Omega r) on r = x + i y [s].
     clockwise : Sense of rotation seen from the left end; z then runs from left to right, else from
         right to left. It decides the signs of the slopes.
+    modal_damping : Ratio of every mode of the free shaft at rest, rotating as `internal_damping`.
     Raises InputError: There is no section, one overlaps another of its layer or leaves the shaft,
         or a disc does.
     """
@@ -51,8 +52,12 @@ class Beam:
     axial_force: float = 0.0
     internal_damping: float = 0.0
     clockwise: bool = True
+    couplings: tuple[Coupling, ...] = ()
+    modal_damping: float = 0.0
 
     def __post_init__(self) -> None:
+        # Copies: `span` tells equal sections apart.
+        object.__setattr__(self, "sections", tuple(replace(section) for section in self.sections))
         if not any(section.layer == 1 for section in self.sections):
             raise InputError("is missing: a shaft needs a section", key="rotor.section")
         if not (math.isfinite(self.internal_damping) and self.internal_damping >= 0.0):
@@ -61,7 +66,23 @@ class Beam:
             )
         if not math.isfinite(self.axial_force):
             raise InputError("must be finite (N)", key="rotor.axial_force", value=self.axial_force)
+        if not 0.0 <= self.modal_damping < 1.0:
+            raise InputError(
+                "must lie between 0 and 1", key="rotor.modal_damping", value=self.modal_damping
+            )
         self._check_layers()
+        for i, coupling in enumerate(self.couplings):
+            slack = _SAME_PLACE * self.length
+            if not slack < coupling.at < self.length - slack:
+                raise InputError(
+                    f"must lie within the shaft, between 0 and {self.length:g} m",
+                    key=f"coupling[{i}].at", value=coupling.at,
+                )  # fmt: skip
+            if any(abs(coupling.at - other.at) <= slack for other in self.couplings[:i]):
+                raise InputError(
+                    "another coupling stands at this place", key=f"coupling[{i}].at",
+                    value=coupling.at,
+                )  # fmt: skip
         for disc in self.discs:
             self.check_place(disc.at, "rotor.disc.at")
 
@@ -110,6 +131,8 @@ class Beam:
     def mesh(self, places: Sequence[float] = (), refinement: int = 1) -> Array:
         """Nodes (n,) [m] from the left end: section ends, discs, `places`, and between them.
 
+        A coupling has two nodes at its place.
+
         places : Where a node is needed: supports, seals, probes, loads [m].
         refinement : Number of parts into which every element is cut.
 
@@ -124,7 +147,9 @@ class Beam:
             if section.elements is not None
             for i in range(1, section.elements)
         ]
-        fixed = _merged([*ends, *inner, *(disc.at for disc in self.discs), *places], self.length)
+        cuts = [coupling.at for coupling in self.couplings]
+        discs = [disc.at for disc in self.discs]
+        fixed = _merged([*ends, *inner, *discs, *cuts, *places], self.length)
         nodes = [fixed[0]]
         for left, right in pairwise(fixed):
             middle = 0.5 * (left + right)
@@ -134,7 +159,8 @@ class Beam:
                 longest = min(*(s.outer_diameter for s in here), self.length / _MIN_ELEMENTS)
                 count *= math.ceil((right - left) / longest * (1.0 - 1e-9))
             nodes += [left + (right - left) * i / count for i in range(1, count + 1)]
-        return np.array(nodes)
+        double = [fixed[int(np.abs(np.array(fixed) - cut).argmin())] for cut in cuts]
+        return np.array(sorted([*nodes, *double]))
 
     def at(self, z: Array, layer_section: Section) -> tuple[Array, Array]:
         """Inner and outer radius (n,) [m] of a section at places z (n,) [m]."""
@@ -197,9 +223,15 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
         beam.check_place(place, "rotor.places")
     nodes = beam.mesh(places, refinement)
     size = 2 * nodes.size
-    mass, stiffness, gyroscopic, geometric = np.zeros((4, size, size))
+    mass, stiffness, gyroscopic, geometric, joints = np.zeros((5, size, size))
     for i, (left, right) in enumerate(pairwise(nodes)):
         here = slice(2 * i, 2 * i + 4)
+        if left == right:
+            coupling = min(beam.couplings, key=lambda one: abs(one.at - left))
+            springs = np.diag([coupling.stiffness, coupling.angular_stiffness])
+            joints[here, here] += np.kron([[1.0, -1.0], [-1.0, 1.0]], springs)
+            mass[[2 * i, 2 * i + 2], [2 * i, 2 * i + 2]] += 0.5 * coupling.mass
+            continue
         translation, rotation, bending, tension = _element_matrices(beam, left, right)
         mass[here, here] += translation + rotation
         gyroscopic[here, here] += 2.0 * rotation
@@ -217,13 +249,16 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
         0.5 * (part + part.T) for part in (mass, stiffness, gyroscopic, geometric)
     )
     damping = beam.internal_damping * stiffness
+    stiffness = stiffness + beam.axial_force * geometric + joints
+    if beam.modal_damping:
+        damping = damping + _modal(mass, stiffness, beam.modal_damping)
     both = _BothPlanes(nodes.size, 1.0 if beam.clockwise else -1.0)
     carried = [_nearest_node(nodes, place) for place in places] or [0, nodes.size - 1]
     return Rotor(
         mass=both.alike(mass),
         damping=both.alike(damping),
         gyroscopic=both.crossed(gyroscopic),
-        stiffness=both.alike(stiffness + beam.axial_force * geometric),
+        stiffness=both.alike(stiffness),
         circulatory=both.crossed(damping),
         nodes=tuple(
             Node(name or f"node{i}", _UNKNOWNS, float(z))
@@ -234,6 +269,22 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
         kind="beam",
         parameters={"length": beam.length},
     )
+
+
+def _modal(mass: Array, stiffness: Array, ratio: float) -> Array:
+    """Damping matrix of one plane that gives every free mode a damping ratio."""
+    from scipy.linalg import eigh
+
+    try:
+        squares, shapes = eigh(stiffness, mass)
+    except np.linalg.LinAlgError:
+        raise InputError(
+            "needs a shaft with mass", key="rotor.modal_damping", value=ratio
+        ) from None
+    # A free shaft's rigid motions, whose squares are zero but for rounding, are not damped.
+    squares = np.where(squares > 1e-12 * squares[-1], squares, 0.0)
+    momentum = mass @ shapes
+    return np.asarray((momentum * (2.0 * ratio * np.sqrt(squares))) @ momentum.T)
 
 
 def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Array, Array, Array]:

@@ -9,7 +9,7 @@ from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import modes
 from rotorsim.machine.support import ConstantSupport
 from rotorsim.machine.thresholds import critical_speeds, threshold_speeds
-from rotorsim.model.shaft import Disc, Material, Section
+from rotorsim.model.shaft import Coupling, Disc, Material, Section
 from rotorsim.rotor import Beam, Rotor, beam_rotor
 from rotorsim.rotor.beam import _shear_coefficient, mesh_change
 from rotorsim.threads import on_one_blas_thread
@@ -208,3 +208,54 @@ def test_default_mesh_and_what_halving_it_changes():
 def test_bad_drawings_are_refused(make, words):
     with pytest.raises(InputError, match=words):
         make()
+
+
+def test_rigid_bodies_on_a_coupling_swing_as_the_closed_form_has_it():
+    # Two equal stiff halves, in one plane: they fold against the angular stiffness, and slide along
+    # each other against the lateral one.
+    half, mass, lateral, angular = 0.5, 40.0, 3e6, 2e4
+    stiff = Material(2e15, mass / half / (np.pi / 4 * 0.09))
+    section = Section(half, 0.3, elements=1, material=stiff)
+    beam = Beam((section, section), shear=False, couplings=(Coupling(half, lateral, angular, 6.0),))
+    rotor = beam_rotor(beam)
+    assert rotor.total_mass == pytest.approx(2 * mass + 6.0)
+    values = np.sqrt(np.maximum(eigh(rotor.stiffness, rotor.mass, eigvals_only=True), 0.0))[4:8]
+    about_end = mass * (half**2 / 12 + 0.3**2 / 16)
+    # Folding: centres move by v, ends at the cut by v + half/2 a, momentum of a half is zero.
+    m, tip, arm = mass, 3.0, half / 2
+    inertia = np.array([[m + tip, tip * arm], [tip * arm, about_end + tip * arm**2]])
+    fold = eigh(np.diag([0.0, 1.0]) * 4 * angular / 2, inertia, eigvals_only=True)[-1]
+    ends = np.array([1.0, arm])
+    slide = eigh(2 * lateral * np.outer(ends, ends), inertia, eigvals_only=True)[-1]
+    assert np.sort(values)[::2] == pytest.approx(np.sqrt(sorted([fold, slide])), rel=1e-6)
+
+
+def test_a_stiff_coupling_is_a_whole_shaft():
+    whole = supported_frequencies(uniform(8))
+    cut = Coupling(0.45, 1e13, 1e12)
+    assert supported_frequencies(uniform(8, couplings=(cut,))) == pytest.approx(whole, rel=2e-3)
+    beam = Beam((Section(0.45, DIAMETER, elements=3), Section(0.75, DIAMETER, elements=5)),
+                material=STEEL)  # fmt: skip
+    same = supported_frequencies(beam)
+    cut_there = Beam(beam.sections, material=STEEL, couplings=(cut,))
+    assert supported_frequencies(cut_there) == pytest.approx(same, rel=1e-5)
+
+
+def test_modal_damping_rotates_and_gives_every_mode_its_ratio():
+    rotor = beam_rotor(uniform(10, modal_damping=0.02))
+    found = modes(Machine(rotor, [(0, ConstantSupport(0.0))]), 0.0, count=12).oscillating()
+    bending = found.damped_frequency[0] > 10.0
+    assert found.damping_ratio[0, bending] == pytest.approx(0.02, rel=1e-6)
+    held = Machine.on_identical(beam_rotor(uniform(10, modal_damping=0.02)), ConstantSupport(1e12))
+    first = float(modes(held, 0.0, count=4).oscillating().damped_frequency[0].min())
+    assert modes(held, 0.9 * first).verdicts == ("stable",)
+    assert modes(held, 1.3 * first).verdicts == ("unstable",)
+
+
+def test_a_massless_shaft_with_a_disc_is_a_jeffcott_rotor():
+    light = Material(210e9, 0.0)
+    beam = Beam((Section(LENGTH, DIAMETER, elements=2),), (Disc(0.6, 50.0),), light, shear=False)
+    machine = Machine.on_identical(beam_rotor(beam), ConstantSupport(1e13, 0.0))
+    found = modes(machine, 100.0).oscillating()
+    wanted = np.sqrt(48.0 * BENDING / LENGTH**3 / 50.0)
+    assert found.damped_frequency[0] == pytest.approx([wanted, wanted], rel=1e-4)
