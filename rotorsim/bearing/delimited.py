@@ -18,7 +18,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -122,6 +122,21 @@ def read(path: str | Path) -> xr.Dataset:
     return without_standstill(_arrange(parsed, source, notes), source)
 
 
+def cells(
+    source: Path, is_header: Callable[[list[str]], bool], other_names: Mapping[str, str]
+) -> tuple[list[_Line], str]:
+    """Lines of a CSV table from its header on, cut into cells, and what separates them."""
+
+    def header(line: Sequence[str]) -> bool:
+        return is_header([named(cell, other_names)[0] for cell in line])
+
+    lines, separator = _lines(_text(source), source, header)
+    for place, (_, line) in enumerate(lines[:_TITLE_LINES]):
+        if header(line):
+            return lines[place:], separator
+    return [], separator
+
+
 def _text(source: Path) -> str:
     """Text of a file that is one, and no other kind of file."""
     data = read_bytes(source, _MAX_BYTES, TableError)
@@ -144,13 +159,15 @@ def _text(source: Path) -> str:
         ) from None
 
 
-def _lines(text: str, source: Path) -> tuple[list[_Line], str]:
+def _lines(
+    text: str, source: Path, header: Callable[[Sequence[str]], bool] | None = None
+) -> tuple[list[_Line], str]:
     """Lines that hold something and are no comments, and what separates their cells."""
     lines = text.splitlines()
     stated = re.match(r"sep=([,;|\t])$", lines[0].strip(" \"'")) if lines else None
     if stated:  # a line for spreadsheet programs
         lines[0] = ""
-    separator = stated[1] if stated else _separator(lines)
+    separator = stated[1] if stated else _separator(lines, header or _is_header)
     try:
         found = [
             (number, [cell.strip() for cell in cells])
@@ -162,18 +179,18 @@ def _lines(text: str, source: Path) -> tuple[list[_Line], str]:
     return found, separator
 
 
-def _separator(lines: Sequence[str]) -> str:
+def _separator(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> str:
     """Separator of the first line that it cuts into the columns of a table; else the comma."""
     for line in lines[:_TITLE_LINES]:
         if line.strip() and not line.lstrip().startswith("#"):
             for separator in _SEPARATORS:
-                if _is_header(line.split(separator)):
+                if header(line.split(separator)):
                     return separator
     return ","
 
 
 def _is_header(cells: Sequence[str]) -> bool:
-    return {"kxx", "cxx"} <= {_named(cell)[0] for cell in cells}
+    return {"kxx", "cxx"} <= {named(cell)[0] for cell in cells}
 
 
 def _from_header(lines: list[_Line]) -> list[_Line]:
@@ -184,25 +201,25 @@ def _from_header(lines: list[_Line]) -> list[_Line]:
     return lines
 
 
-def _named(cell: str) -> tuple[str, str]:
+def named(cell: str, other_names: Mapping[str, str] = _OTHER_NAMES) -> tuple[str, str]:
     """Name as this program calls it, and unit, of a header's cell."""
     match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_NAME else None
     if match is None:
         return cell.strip()[:_LONGEST_NAME], ""
     name = re.sub(r"[\s_]+", "_", match[1].strip(" \"'").lower())
     unit = (match[2] or match[3] or "").strip()
-    return _OTHER_NAMES.get(name, name), unit
+    return other_names.get(name, name), unit
 
 
 def _units_row(lines: list[_Line]) -> tuple[list[str] | None, list[_Line]]:
     """Cells of the row of units, where there is one, and the rows below."""
     if len(lines) < 2:
         return None, []
-    names = [_named(cell)[0] for cell in lines[0][1]]
+    names = [named(cell)[0] for cell in lines[0][1]]
     cells = lines[1][1]
     known = [cell for name, cell in zip(names, cells, strict=False) if name in _KINDS]
     numbers = any(_NUMBER.fullmatch(cell) or _DIGITS.fullmatch(cell) for cell in known)
-    stated = any(_named(cell)[1] for cell in lines[0][1] if _named(cell)[0] in COEFFICIENTS)
+    stated = any(named(cell)[1] for cell in lines[0][1] if named(cell)[0] in COEFFICIENTS)
     if any(known) and not numbers and not stated:
         return [cell.strip("[]() ") for cell in cells], lines[2:]
     return None, lines[1:]
@@ -215,7 +232,7 @@ def _columns(
     columns: list[_Column] = []
     left_out: list[str] = []
     for place, cell in enumerate(header):
-        name, unit = _named(cell)
+        name, unit = named(cell)
         if not unit and units is not None and place < len(units):
             unit = units[place]
         if not unit and cell.strip().lower() == "rpm":

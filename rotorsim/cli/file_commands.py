@@ -108,9 +108,13 @@ def new(
             autocompletion=_shipped_names,
         ),
     ] = None,
+    source: Annotated[
+        Path | None,
+        option("--from", "FILE", "A machine from a rotor saved by ROSS, or a CSV of sections."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> int:
-    """Write a commented scenario to start from.
+    """Write a commented scenario to start from, or a machine from another program's drawing.
 
     Example: rotorsim new pump --profile elliptical --load "10 kN" --iso-vg 46
     """
@@ -130,6 +134,10 @@ def new(
     if path.exists() and not force:
         raise InputError("exists; choose another name, or replace it with --force", source=path)
     check_file(path)
+    if source is not None:
+        if (profile, load, eccentricity, iso_vg, example) != (None,) * 5:
+            raise InputError("describes the whole machine: give no further choice", key="--from")
+        return _from_drawing(output, path, source)
     if example is None:
         text = _new_text(path.stem, profile or _Profile.PLAIN, load, eccentricity, iso_vg)
     elif (profile, load, eccentricity, iso_vg) == (None, None, None, None):
@@ -150,6 +158,24 @@ def new(
         f"  rotorsim check {as_typed(path)}\n"
         f"  rotorsim run {as_typed(path)}"
     )
+    return DONE
+
+
+def _from_drawing(output: Output, path: Path, source: Path) -> int:
+    """Write a machine file and its tables from another program's drawing."""
+    from ..atomic import write_text
+    from ..files.machine import MachineFile
+    from ..files.shafts import machine_text
+
+    text, tables = machine_text(source, path.stem)
+    for name, table in tables.items():
+        table.to_csv(path.with_name(f"{path.stem}_{name}"))
+        text = text.replace(f'"{name}"', f'"{path.stem}_{name}"')
+    machine = MachineFile.from_text(text, source=path)
+    write_text(path, text)
+    files = [path, *(path.with_name(f"{path.stem}_{name}") for name in tables)]
+    output.document({"file": path, "tables": files[1:], "title": machine.title})
+    output.note(f"written: {', '.join(map(str, files))}\nnext:\n  rotorsim check {as_typed(path)}")
     return DONE
 
 
