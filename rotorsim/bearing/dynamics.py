@@ -22,13 +22,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigvals
+from scipy.linalg import block_diag, eigvals
 from scipy.optimize import brentq
 
-from ..film.geometry import ROTATIONS, TRANSLATIONS, pad_unknowns
+from ..film.geometry import ROTATIONS, TRANSLATIONS, idle_pitches, pad_unknowns
 from ..film.linearization import DynamicStiffness, linearize
 from ..film.solution import FilmSolution
-from ..model import Bearing, pad_inertia
+from ..model import Bearing, PadInertia, pad_inertia
 from ..status import Stability
 from .operating_point import FrequencyCoefficients, FullCoefficients, condensed
 from .whirl import FrequencyScan, WhirlThreshold, rigid_threshold, routh_coefficients
@@ -240,11 +240,12 @@ def film_dynamics(
     if solution.problem.bearing.pads:
         turn = np.eye(len(keep))
         bearing, q = solution.problem.bearing, solution.state.displacement
-        pivots, mass = (
-            np.pad(part, (0, 2))[np.ix_(keep, keep)]  # the journal's rotations come last
-            for part in (_pivot_stiffness(bearing, q), pad_mass(bearing))
-        )
-        held = held + pivots
+        # The journal's rotations come last, and what turns with them.
+        pitching = [_inertia(bearing, number).pitch for number in idle_pitches(bearing)]
+        turning = np.diag([0.0, 0.0, *pitching])
+        mass = np.asarray(block_diag(pad_mass(bearing), turning))[np.ix_(keep, keep)]
+        pivots = block_diag(_pivot_stiffness(bearing, q), 0.0 * turning)
+        held = held + np.asarray(pivots)[np.ix_(keep, keep)]
     return FilmDynamics(
         turn=turn,
         speed=speed,
@@ -278,14 +279,17 @@ def _moving(
 ) -> tuple[tuple[str, ...], list[int]]:
     """Names and places of the displacements: the journal's, then those of loaded pads.
 
-    `linearize` gives the journal's rotations last.
+    `linearize` gives the journal's rotations last, with the pitches that go with them.
     """
     names, pads = pad_unknowns(bearing)
     out = {place for number in unloaded for place in pads[number].places}
     keep = [place for place in range(2, len(names)) if place not in out]
     journal, places = TRANSLATIONS, [0, 1]
     if rotations:
-        journal, places = TRANSLATIONS + ROTATIONS, [0, 1, len(names), len(names) + 1]
+        size, pitches = len(names), idle_pitches(bearing)
+        names = (*names, *ROTATIONS, *(f"pitch_{number + 1}" for number in pitches))
+        journal, places = TRANSLATIONS + ROTATIONS, [0, 1, size, size + 1]
+        keep += [size + 2 + k for k, number in enumerate(pitches) if number not in unloaded]
     return (*journal, *(names[place] for place in keep)), places + keep
 
 
@@ -298,12 +302,16 @@ def _pivot_stiffness(bearing: Bearing, displacement: Array) -> Array:
     return np.diag(stiffness)
 
 
+def _inertia(bearing: Bearing, number: int) -> PadInertia:
+    return pad_inertia(bearing.pads[number], bearing.journal_radius, bearing.length)
+
+
 def pad_mass(bearing: Bearing) -> Array:
     """Mass matrix of the pads over journal and pads, (q, q) [kg, kg m, kg m2]."""
     names, places = pad_unknowns(bearing)
     mass = np.zeros((len(names), len(names)))
-    for pad, unknowns in zip(bearing.pads, places, strict=True):
-        inertia = pad_inertia(pad, bearing.journal_radius, bearing.length)
+    for number, unknowns in enumerate(places):
+        inertia = _inertia(bearing, number)
         tilt, pivot = unknowns.tilt, unknowns.pivot
         mass[tilt, tilt] = inertia.tilt
         if pivot is not None:

@@ -115,18 +115,11 @@ def condensed(law: NDArray[np.complex128], kept: int) -> NDArray[np.complex128]:
 def kept_throughout(speeds: Array, matrices: Array) -> tuple[NDArray[np.intp], Array]:
     """Keep the unknowns that all points have; eliminate the others at the shaft's frequency.
 
-    Parameters
-    ----------
-    speeds : (n,) array
-        [rad/s]
-    matrices : (3, n, q, q) array
-        K, C and M of each point, NaN in the rows and columns of what it has not.
+    speeds : (n,) array [rad/s]
+    matrices : (3, n, q, q) array. K, C and M of each point, NaN in the rows and columns of what it
+        has not.
 
-    Returns
-    -------
-    (k,) array of int
-        Unknowns kept.
-    (3, n, k, k) array
+    Returns the places of the unknowns kept, (k,), and their matrices (3, n, k, k).
     """
     moving: NDArray[np.bool_] = np.isfinite(np.diagonal(matrices[0], axis1=1, axis2=2))
     stays = np.asarray(moving.all(axis=0), dtype=bool)

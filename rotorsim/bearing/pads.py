@@ -61,13 +61,7 @@ def supply_warnings(
 ) -> tuple[str, ...]:
     """Return sentences on pads that get less oil than their films take.
 
-    Parameters
-    ----------
-    bearing : Bearing
-    cavitation : Cavitation
-    pads : sequence of PadResult
-    demand : sequence of float
-        Of each pad's opening [m3/s].
+    demand : Of each pad's opening [m3/s].
     """
     starved = [number for number, pad in enumerate(pads) if pad.inlet_fraction < 1.0]
     if starved:

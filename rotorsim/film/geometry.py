@@ -197,12 +197,7 @@ def pad_face(
 ) -> Array:
     """Distance [m] of a pad's face from a centred journal's surface, at mid-plane.
 
-    Parameters
-    ----------
-    theta : array
-        [rad]
-    tilt, pivot : float
-        In the direction of rotation [rad]; outwards [m].
+    tilt, pivot : In the direction of rotation [rad]; outwards [m].
     """
     angle, clearance = theta - pad.pivot_angle, bearing.clearance_of(pad)
     face = clearance * (1.0 - bearing.preload_of(pad) * np.cos(angle))
@@ -260,6 +255,28 @@ def rotations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
     along = np.stack([y, y, y, mesh.y_faces[:-1], mesh.y_faces[1:]])[:, None, :]
     scale = bearing.radial_clearance / (0.5 * bearing.length)
     return Displacements(ROTATIONS, around * along, np.full(2, scale))
+
+
+def idle_pitches(bearing: Bearing) -> tuple[int, ...]:
+    """Pads, from 0, that pitch only where the journal turns out of line: aligned, none does."""
+    if not bearing.is_symmetric:
+        return ()
+    return tuple(number for number, pad in enumerate(bearing.pads) if pad.pivot.pitches)
+
+
+def turnings(bearing: Bearing, mesh: FilmMesh) -> Displacements:
+    """Rotations of the journal, and behind them the pitches of `idle_pitches`."""
+    turned = rotations(bearing, mesh)
+    y = mesh.y
+    along = np.stack([y, y, y, mesh.y_faces[:-1], mesh.y_faces[1:]])[:, None, :]
+    for number in idle_pitches(bearing):
+        columns, pad = mesh.region == number, bearing.pads[number]
+        shape = np.zeros((1, 5, *mesh.shape))
+        angle = _angles(mesh)[[0, 1, 2, 0, 0]][:, columns, None] - pad.pivot_angle
+        shape[0][:, columns] = along * np.cos(angle)
+        scale = np.array([bearing.clearance_of(pad) / (0.5 * bearing.length)])
+        turned = turned.joined(Displacements((f"pitch_{number + 1}",), shape, scale))
+    return turned
 
 
 def _angles(mesh: FilmMesh) -> Array:

@@ -25,8 +25,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from .flow_law import COUETTE_POWER, POISEUILLE_POWER
-from .geometry import CENTER, Displacements
-from .geometry import rotations as journal_rotations
+from .geometry import CENTER, Displacements, turnings
 from .kernels import kernel
 from .operator import film_operator, neighbour
 from .problem import FilmState
@@ -84,7 +83,7 @@ def _film_motions(state: FilmState, *, rotations: bool = False) -> tuple[_Motion
     own = problem.geometry.displacements
     if not rotations:
         return (_Motions(state, own, factor),)
-    turning = problem.geometry.moving(journal_rotations(problem.bearing, problem.mesh))
+    turning = problem.geometry.moving(turnings(problem.bearing, problem.mesh))
     if not problem.mesh.half:
         return (_Motions(state, own.joined(turning), factor),)
     topology = problem.topology.antisymmetric()

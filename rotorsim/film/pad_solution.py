@@ -218,9 +218,9 @@ def _conclude(
         status = SolveStatus.NO_EQUILIBRIUM
         loaded = sorted(set(range(len(search.frames))) - search.unloaded)
         message = (
-            f"only pad {', '.join(str(number + 1) for number in loaded)} can be balanced at "
-            "positive pressure, whose pivots cannot add up to the load's direction: the others "
-            "float or flutter (preload or an offset pivot would load them)"
+            f"of pads only {', '.join(str(number + 1) for number in loaded)} can be balanced at "
+            "positive pressure, and the forces along their pivots cannot add up to the load's "
+            "direction; the others float or flutter (preload or an offset pivot would load them)"
         )
     elif not converged:
         status = SolveStatus.NOT_CONVERGED

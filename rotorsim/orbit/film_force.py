@@ -138,17 +138,9 @@ class SolvedFilmForce:
     def forces(self, q: Array, v: Array, speed: float) -> Array:
         """Generalised forces of film and pivots, (q,), on journal and pads, load frame.
 
-        Parameters
-        ----------
-        q, v : (q,) arrays
-            Displacements of journal and pads, and their rates.
-        speed : float
-            [rad/s]
+        q, v : (q,) arrays. Displacements of journal and pads, and their rates.
 
-        Raises
-        ------
-        ArithmeticError
-            The film cannot be solved.
+        Raises ArithmeticError: The film cannot be solved.
         """
         return self._turn @ self.film(q, v, speed).force - self._pivots(q)[0]
 

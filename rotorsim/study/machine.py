@@ -448,7 +448,7 @@ class MachineAnalysis:
         changes = dict(self.variant.films.get(name, {}))
         changes.pop("applied_load", None)
         case = changed(case, changes)
-        turn = scenario.load_direction + self.description.support[i].angle
+        turn = scenario.housing_turn + self.description.support[i].angle
         direction = math.atan2(load[1], load[0])
         return replace(
             case,

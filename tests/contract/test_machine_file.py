@@ -243,3 +243,35 @@ def test_python_answers_questions_to_a_machine_file(tmp_path):
     assert np.abs(wheel).max() > 0.0
     with pytest.raises(InputError, match="load_machine"):
         rs.modes("rotor.toml")
+
+
+def test_pads_stand_by_a_machine_s_x_whatever_load_their_own_file_has(tmp_path):
+    """``on_pad`` counts from machine x, angles of pivots as a groove's."""
+    pads = FILM.replace("[bearing]\n", '[bearing]\nkind = "tilting_pad"\n').replace(
+        "[lubricant]",
+        '[bearing.pads]\ncount = 4\narc = "70 deg"\nthickness = "12 mm"\npreload = 0.3\nPLACE\n'
+        "[lubricant]",
+    )
+    found = {}
+    for name, place, direction in (
+        ("plain", 'load = "on_pad"', "0 deg"),
+        ("own", 'load = "on_pad"', "30 deg"),
+        ("angle", 'pivot_angle = "20 deg"', "30 deg"),
+    ):
+        text = pads.replace("PLACE", place) + f'load_direction = "{direction}"\n'
+        (tmp_path / f"{name}.toml").write_text(text)
+        supports = "".join(
+            f'[[support]]\nname = "{at}"\nat = "{at}"\nbearing = "{name}.toml"\n'
+            for at in ("0 m", "1 m")
+        )
+        file = tmp_path / f"machine_{name}.toml"
+        shaft = SHAFT.replace("count = 5", "count = 2")
+        file.write_text(shaft + supports)
+        (one,) = analyse_machine(load_machine(file), workers=1).values()
+        found[name] = one.supports[0].points[-1]
+        assert found[name].converged
+    loads = {name: [pad.load for pad in point.pads] for name, point in found.items()}
+    np.testing.assert_allclose(loads["own"], loads["plain"], rtol=1e-9)
+    # The load falls on machine x: on the first pad, or 20 degrees before it.
+    assert loads["plain"][1] == pytest.approx(loads["plain"][3], rel=1e-6)
+    assert loads["angle"][3] > 1.05 * loads["angle"][1]

@@ -5,16 +5,19 @@ from __future__ import annotations
 import io
 import subprocess
 import time
+from dataclasses import replace
 
 import numpy as np
 import pyarrow as pa
 import pytest
 import rerun as rr
+from pad_cases import THICKNESS, equal_pads
 from PIL import Image
 from rerun.chunk import RrdReader
 from sample_results import campbell_of, chart_of, orbit_of
 
 from rotorsim.errors import InputError
+from rotorsim.model import Bearing
 from rotorsim.show import viewer
 from rotorsim.show.recording import RecordingContents, surfaces, write_recording
 from rotorsim.show.recording.charts import _eigenvalues_at
@@ -96,6 +99,36 @@ def column(file, entity, ending, timeline="time"):
     rows = [row for b in batches for row in b.column(name).to_pylist()]
     order = np.argsort(index, kind="stable")
     return index[order], [rows[i] for i in order]
+
+
+def test_tilting_pads_are_drawn_as_they_stand(tmp_path):
+    """Their outlines from speed to speed, and the coloured film on their faces."""
+    pads = equal_pads(preload=0.0)
+    bearing = Bearing(0.05, 0.08, C, pads=pads)
+    frames = [
+        replace(film("isothermal", speed), bearing=bearing, tilts=(tilt,) * 5, pivots=(0.0,) * 5)
+        for speed, tilt in ((400.0, 0.0), (800.0, 1e-3))
+    ]
+    path = write_recording(tmp_path / "pads.rrd", RecordingContents("", "", "", (), tuple(frames)))
+    _, rows = column(path, "/bearing/isothermal/bush/pads_mm", "strips", "speed_rpm")
+    level, tilted = (np.array(row[0]) for row in rows)
+    assert [len(row) for row in rows] == [30, 30]  # 5 pads: two ends, four edges
+    pivot = np.array([np.cos(pads[0].pivot_angle), np.sin(pads[0].pivot_angle)])
+    drawn = 0.22 * 50.0 / (C * 1e3)  # times too large
+    radius = np.hypot(*level[:21, :2].T)
+    np.testing.assert_allclose(radius, 50.0 * 1.22, rtol=1e-6)
+    lever = (50.0 + 1e3 * THICKNESS) * np.sin(np.radians(30.0)) * 1e-3 * drawn
+    moved = np.hypot(*tilted[:21, :2].T) - radius
+    assert moved[0] == pytest.approx(lever, rel=1e-5)  # the leading edge opens
+    assert moved[20] == pytest.approx(-lever, rel=1e-5)  # the trailing edge closes
+    assert tilted[10, :2] @ pivot == pytest.approx(level[10, :2] @ pivot)
+    _, faces = column(
+        path, "/bearing/isothermal/pressure/wrapped/pressure_MPa", "vertex_positions", "speed_rpm"
+    )
+    angle = np.linspace(-np.pi, np.pi, 97)
+    at = int(np.abs(angle - pads[0].trailing_edge + 0.1).argmin())
+    radii = [np.hypot(*np.array(face).reshape(97, 17, 3)[at, 0, :2]) for face in faces]
+    assert radii[1] < radii[0] - 0.5 * lever
 
 
 @pytest.mark.slow

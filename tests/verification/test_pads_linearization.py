@@ -263,3 +263,23 @@ def test_eccentricities_from_nearly_none_to_nearly_touching(share: float, first_
     assert point.converged, point.message
     assert point.eccentricity_ratio == pytest.approx(share * reach)
     assert point.attitude_angle == pytest.approx(0.0, abs=1e-6)
+
+
+def test_pads_on_balls_pitch_with_the_journal_s_rotations_when_it_is_in_line():
+    """On half the mesh as on the whole one, on which a hair of misalignment puts the pads."""
+    pads = equal_pads(preload=0.5, pivot=SpherePivot(radius=0.05))
+    found = {}
+    for slope in (0.0, 1e-10):
+        case = pad_case(pads, LoadTarget(3000.0), misalignment=(slope, 0.0), mesh=(60, 12))
+        solution = solve_pads(case, SPEED)
+        dynamics = film_dynamics(solution, np.eye(solution.state.displacement.size), rotations=True)
+        assert sum(name.startswith("pitch") for name in dynamics.names) == 5
+        found[slope] = dynamics.reduced(0.5j * SPEED)
+    scales = np.array([CLEARANCE] * 2 + [2.0 * CLEARANCE / LENGTH] * 2)
+    weights = scales[:, None] * scales[None, :]
+    wrong = np.abs((found[0.0] - found[1e-10]) * weights).max()
+    assert wrong < 1e-5 * np.abs(found[0.0] * weights).max()
+    locked = pad_case(equal_pads(preload=0.5, pivot=SpringPivot(1e12)), LoadTarget(3000.0))
+    solution = solve_pads(locked, SPEED)
+    stiff = film_dynamics(solution, np.eye(solution.state.displacement.size), rotations=True)
+    assert abs(found[0.0][2, 2]) < 0.5 * abs(stiff.reduced(0.5j * SPEED)[2, 2])

@@ -67,8 +67,7 @@ def _settled_pads(scenario: Scenario, tables: _Tables) -> Scenario:
     if not bearing.pads:
         return scenario
     table, heat = tables["bearing"], tables.get("thermal", {})
-    shared, own = table.get("pads", {}), table.get("pad", [])
-    if "pivot_angle" not in shared and not any("pivot_angle" in pad for pad in own):
+    if stand_by_load(table):
         bearing = bearing.turned(scenario.load_direction)
     if "inlet" not in heat:
         thermal = replace(thermal, inlet=InletModel.MIXING)
@@ -76,6 +75,12 @@ def _settled_pads(scenario: Scenario, tables: _Tables) -> Scenario:
         kept = 1.0 if bearing.supply_flow is not None else CARRY_OVER[bearing.feed]
         thermal = replace(thermal, hot_oil_carry_over=kept)
     return replace(scenario, bearing=bearing, thermal=thermal)
+
+
+def stand_by_load(table: Mapping[str, Any]) -> bool:
+    """Whether the pads of a table ``[bearing]`` stand by the load: no pivot has an angle."""
+    pads = [table.get("pads", {}), *table.get("pad", [])]
+    return not any("pivot_angle" in pad for pad in pads)
 
 
 def _check_bearings(scenario: Scenario) -> None:

@@ -27,7 +27,7 @@ from ...rotor import Rotor
 from ...shipped import shipped_scenarios
 from ...text import printable
 from ...units import QUANTITIES
-from .consistency import settled
+from .consistency import settled, stand_by_load
 from .document import parse_toml, read_text
 from .reader import Reader, makers_of, tables_of
 
@@ -106,6 +106,16 @@ class Scenario:
     def load_direction(self) -> float:
         """Angle of the load in the frame in which the bearing is given [rad]."""
         return self.operating.load_direction
+
+    @property
+    def housing_turn(self) -> float:
+        """Angle from the bearing as a case has it to the housing's frame, which machines count in.
+
+        The load's direction [rad]; 0 where pads stand by the load, in whose place is a machine's x.
+        """
+        if self.bearing.pads and stand_by_load(tomllib.loads(self.text)["bearing"]):
+            return 0.0
+        return self.load_direction
 
     @property
     def speeds(self) -> NDArray[np.float64]:

@@ -31,14 +31,9 @@ Flags = NDArray[np.bool_]
 class OilSupply:
     """Oil given to each opening between pads.
 
-    Attributes
-    ----------
-    flow : (g,) array
-        Over the meshed part [m3/s].
-    carry_over : float
-        Part of the oil let out by a pad that reaches the next one.
-    groove : (n,) int array
-        Opening to which a column belongs; -1 in the film.
+    flow : (g,) array. Over the meshed part [m3/s].
+    carry_over : Part of the oil let out by a pad that reaches the next one.
+    groove : (n,) int array. Opening to which a column belongs; -1 in the film.
     """
 
     flow: Array
@@ -102,18 +97,13 @@ class StarvedFactor:
 
     Sources of a balance stand in the first row of its opening's cells.
 
-    Attributes
-    ----------
-    film : MixedFactor
-    inflow, weights : (s, n, m) arrays
-        What a full leading edge takes in, and what comes back, of each balance.
-    columns : (s, n, m) array
-        The film's answer to the inflows.
-    demand, given : (s,) arrays
-        [m3/s]
+    inflow, weights : (s, n, m) arrays. What a full leading edge takes in, and what comes back, of
+        each balance.
+    columns : (s, n, m) array. The film's answer to the inflows.
+    demand, given : (s,) arrays [m3/s]
     cells : (s, n, m) bool array
-    returned : (2, n) array
-        Part of a change of what enters through a column's west or east face that its opening lacks.
+    returned : (2, n) array. Part of a change of what enters through a column's west or east face
+        that its opening lacks.
     """
 
     film: MixedFactor

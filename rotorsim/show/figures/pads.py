@@ -30,17 +30,10 @@ def pad_sections(points: Sequence[OperatingPoint], bearing: Bearing, title: str 
     Pads stand as they are tilted, the clearance drawn far too large; the load points down, the
     shaft turns counter-clockwise.
 
-    Parameters
-    ----------
-    points : sequence of OperatingPoint
-        With their fields.
-    bearing : Bearing
-        With pads, in the load frame.
+    points : With their fields.
+    bearing : With pads, in the load frame.
 
-    Raises
-    ------
-    InputError
-        A point was solved without its fields.
+    Raises InputError: A point was solved without its fields.
     """
     films = []
     for point in points:
