@@ -46,8 +46,8 @@ class EnergyProblem:
     ----------
     flow : FilmFlow
     layers : LayerIntegrals
-    heating : (3, n, m) array
-        Multipliers of the three parts of the dissipation of a layer (see `dissipation`).
+    heating : (4, n, m) array
+        Multipliers of the parts of the dissipation of a layer (see `dissipation`).
     carry_over : (n, m) array
         Part of the oil entering through the west face that comes from the column before; the rest
         has the inlet's temperature.
@@ -78,6 +78,12 @@ class EnergyProblem:
     dx: Array
     dy: Array
 
+    def wall_conductance(self, layer: int) -> Array:
+        """Conductance [W/K] from the bush (layer 0) or the shaft (-1) to the layer beside it."""
+        turbulent = self.layers.turbulent
+        eddies = 1.0 if turbulent is None else turbulent.conduction[:, :, layer]
+        return 2.0 * self.conductance * eddies
+
 
 def dissipation(
     operator: FilmOperator,
@@ -86,18 +92,23 @@ def dissipation(
     flow: FilmFlow,
     surface_speed: float,
 ) -> Array:
-    """Return the multipliers of a layer's dissipation, per cell: (3, n, m).
+    """Return the multipliers of a layer's dissipation, per cell: (4, n, m).
 
     The shear stress is tau = h p' (z - G) + U/(h F_0) around and h p' (z - G) along the axis; the
     power in a layer, int h tau^2/mu dz over the cell, is thus
 
-        D = s_2 int (z - G)^2/mu dz + s_1 int (z - G)/mu dz + s_0 int dz/mu.
+        D = s_0 int dz/mu + s_1 int (z - G)/mu dz + (s_2 + s_3) int (z - G)^2/mu dz
+
+    with s_2 from the pressure gradient along the motion, s_3 from that along the axis. In a
+    turbulent film, tau du/dz of the flow linearised about Couette flow: mu (1 + eps) stands under
+    s_0 and s_3, the tangent viscosity mu_t with its own G under s_2, and under s_1 the mean of both
+    fluidities.
 
     The squared gradients are taken face by face with the pressure equation's own differences and
     shared between the cells behind the face, so that the sum over the film equals the shaft's
     friction power exactly (discrete Green's identity).
     """
-    heating = np.zeros((3, *operator.area.shape))
+    heating = np.zeros((4, *operator.area.shape))
     _heating(
         operator.interior, operator.conductance, operator.face_thickness, operator.spacing,
         operator.fixed, operator.area, operator.dx, operator.dy, thickness, layers.f0,
@@ -123,7 +134,10 @@ def _heating(
                 width = dy[j] if face < 2 else dx[i]
                 thickness, rise = face_h[face, i, j], step[face, i, j]
                 # int over the face's reach of h^3 p'^2, and of h p'
-                heating[2, i, j] += share * thickness**3 * rise * rise * width / spacing[face, i, j]
+                part = 2 if face < 2 else 3
+                heating[part, i, j] += (
+                    share * thickness**3 * rise * rise * width / spacing[face, i, j]
+                )
                 if face < 2:
                     heating[1, i, j] += 2.0 * speed * share * thickness * rise * width / f0[i, j]
             heating[0, i, j] = (
@@ -170,6 +184,10 @@ def march(
     change = 0.0
     flow, layers = problem.flow, problem.layers
     extra = np.zeros((1, 1, 1)) if source is None else source
+    turbulent = layers.turbulent
+    axial = layers.pressure_share if turbulent is None else turbulent.axial_share
+    heat_share = np.empty((4, 0, 0, 0)) if turbulent is None else turbulent.heat_share
+    conduction = np.empty((0, 0, 0)) if turbulent is None else turbulent.conduction
     if inlet_temperature.ndim == 3:
         inlet_temperature = inlet_temperature[:, :, :, None]
     # Temperature of the oil that leaves each cell along the film and along the axis.
@@ -178,8 +196,8 @@ def march(
     for _ in range(passes):
         change = _sweep(
             flow.poiseuille, flow.couette, flow.shared, flow.inlet, problem.carry_over,
-            layers.pressure_share,
-            layers.shear_share, layers.g, viscosity, problem.heating, problem.conductance,
+            layers.pressure_share, axial, layers.shear_share, layers.g, viscosity, heat_share,
+            conduction, problem.heating, problem.conductance,
             problem.heat_capacity, problem.order, problem.axial_order, problem.fixed,
             problem.interior, problem.dx, problem.dy, walls.bush, walls.shaft, walls.bush_insulated,
             inlet_temperature, extra, temperature, leaving,
@@ -189,9 +207,10 @@ def march(
 
 @kernel
 def _sweep(
-    poiseuille, couette, shared, inlet, carry_over, pressure_share, shear_share, g, viscosity,
-    heating, conductance, heat_capacity, order, axial_order, fixed, interior, dx, dy, bush, shaft,
-    bush_insulated, inlet_temperature, extra, temperature, leaving,
+    poiseuille, couette, shared, inlet, carry_over, pressure_share, axial_share, shear_share, g,
+    viscosity, heat_share, conduction, heating, conductance, heat_capacity, order, axial_order,
+    fixed, interior, dx, dy, bush, shaft, bush_insulated, inlet_temperature, extra, temperature,
+    leaving,
 ):  # fmt: skip
     n, m, layers = temperature.shape
     dz = 1.0 / layers
@@ -201,6 +220,7 @@ def _sweep(
     largest = 0.0
     layered = 1 if inlet_temperature.shape[3] == layers else 0
     with_extra = extra.shape[0] == n
+    turbulent = conduction.shape[0] == n
     for c in range(n):
         i = order[c]
         before = i - 1 if i > 0 else n - 1
@@ -244,12 +264,13 @@ def _sweep(
                     )
                 else:
                     q_e = g_e * a_own + c_e * b_own
+                a_own = axial_share[i, j, k]
                 q_s = g_s * a_own
                 if shared[2, i, j]:
-                    q_s = 0.5 * (q_s + g_s * pressure_share[i, south, k])
+                    q_s = 0.5 * (q_s + g_s * axial_share[i, south, k])
                 q_n = g_n * a_own
                 if shared[3, i, j]:
-                    q_n = 0.5 * (q_n + g_n * pressure_share[i, north, k])
+                    q_n = 0.5 * (q_n + g_n * axial_share[i, north, k])
                 q_w *= heat_capacity
                 q_e *= heat_capacity
                 q_s *= heat_capacity
@@ -302,30 +323,41 @@ def _sweep(
                 leaving[0, i, j, k], slope[k] = ahead, ahead_from
                 leaving[1, i, j, k], slope[layers + k] = aside, aside_from
                 # dissipation in the layer
-                fluidity = 1.0 / viscosity[i, j, k]
-                z0 = k * dz - ratio
-                z1 = z0 + dz
-                rhs += fluidity * (
-                    heating[2, i, j] * (z1 * z1 * z1 - z0 * z0 * z0) / 3.0
-                    + heating[1, i, j] * 0.5 * (z1 * z1 - z0 * z0)
-                    + heating[0, i, j] * dz
-                )
+                k_low, k_high = kz, kz
+                if turbulent:
+                    k_low *= conduction[i, j, k]
+                    k_high *= conduction[i, j, k + 1]
+                    rhs += (
+                        heating[0, i, j] * heat_share[0, i, j, k]
+                        + heating[1, i, j] * heat_share[1, i, j, k]
+                        + heating[2, i, j] * heat_share[2, i, j, k]
+                        + heating[3, i, j] * heat_share[3, i, j, k]
+                    )
+                else:
+                    fluidity = 1.0 / viscosity[i, j, k]
+                    z0 = k * dz - ratio
+                    z1 = z0 + dz
+                    rhs += fluidity * (
+                        (heating[2, i, j] + heating[3, i, j]) * (z1 * z1 * z1 - z0 * z0 * z0) / 3.0
+                        + heating[1, i, j] * 0.5 * (z1 * z1 - z0 * z0)
+                        + heating[0, i, j] * dz
+                    )
                 if with_extra:
                     rhs += extra[i, j, k]
                 # across the film: rising is what enters from the layer below
                 a_below = 0.0
                 if k > 0:
-                    a_below = max(rising, kz + 0.5 * rising, 0.0)
+                    a_below = max(rising, k_low + 0.5 * rising, 0.0)
                 elif not bush_insulated:
-                    center += 2.0 * kz
-                    rhs += 2.0 * kz * bush[i, j]
+                    center += 2.0 * k_low
+                    rhs += 2.0 * k_low * bush[i, j]
                 rising += q_w - q_e + q_s - q_n
                 a_above = 0.0
                 if k < layers - 1:
-                    a_above = max(-rising, kz - 0.5 * rising, 0.0)
+                    a_above = max(-rising, k_high - 0.5 * rising, 0.0)
                 else:
-                    center += 2.0 * kz
-                    rhs += 2.0 * kz * shaft
+                    center += 2.0 * k_high
+                    rhs += 2.0 * k_high * shaft
                 lower[k] = -a_below
                 upper[k] = -a_above
                 diagonal[k] = center + a_below + a_above

@@ -134,8 +134,11 @@ def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
     n, m = cells.shape
     far_i = (i + {WEST: -1, EAST: 1}.get(face, 0)) % n
     far_j = np.clip(j + {SOUTH: -1, NORTH: 1}.get(face, 0), 0, m - 1)
-    share_a, share_b = layers.pressure_share[i, j], layers.shear_share[i, j]
-    far_a, far_b = layers.pressure_share[far_i, far_j], layers.shear_share[far_i, far_j]
+    shares = layers.pressure_share
+    if face in (SOUTH, NORTH) and layers.turbulent is not None:
+        shares = layers.turbulent.axial_share
+    share_a, share_b = shares[i, j], layers.shear_share[i, j]
+    far_a, far_b = shares[far_i, far_j], layers.shear_share[far_i, far_j]
     shared = flow.shared[face][i, j][:, None]
     if face == WEST:
         # A ruptured column passes on its own profile.
@@ -357,7 +360,11 @@ def dissipated_power(energy: EnergyProblem) -> float:
     """Return the power that the film turns into heat, over the meshed part [W]."""
     # Summed over the layers: int (z - G)^2/mu = F_2, int (z - G)/mu = 0, int 1/mu = F_0.
     layers = energy.layers
-    return float(np.sum(energy.heating[2] * layers.f2 + energy.heating[0] * layers.f0))
+    heating = energy.heating
+    power = heating[0] * layers.f0 + heating[2] * layers.f2 + heating[3] * layers.f2_axial
+    if layers.turbulent is not None:
+        power += heating[1] * 0.5 * layers.f0 * (layers.g - layers.turbulent.g_tangent)
+    return float(np.sum(power))
 
 
 def heat_balance(

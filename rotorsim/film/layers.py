@@ -35,9 +35,13 @@ class LayerIntegrals:
         F_2 along the axis; the same in laminar flow.
     pressure_share, shear_share : (n, m, k) arrays
         a_k [1/(Pa s)] and b_k [-]; empty (k = 0) for an isoviscous film.
+    viscosity : (n, m, k) array
+        Laminar [Pa s]; k = 1 for an isoviscous film.
     rates : (3, n, m) array or None
         d ln/d ln h of f2, f2_axial and 1 - g, where the flow law makes them depend on the film
         thickness.
+    turbulent : TurbulentIntegrals or None
+        What a turbulent film needs besides.
     """
 
     f0: Array
@@ -46,7 +50,37 @@ class LayerIntegrals:
     g: Array
     pressure_share: Array
     shear_share: Array
+    viscosity: Array
     rates: Array | None = None
+    turbulent: TurbulentIntegrals | None = None
+
+
+@dataclass(frozen=True)
+class TurbulentIntegrals:
+    """Besides `LayerIntegrals`, where any column is not laminar.
+
+    Attributes
+    ----------
+    laminar : LayerIntegrals
+        Of the same viscosity.
+    weight : (n, m) array
+        Of turbulent against laminar fluidity, 0 to 1.
+    g_tangent : (n, m) array
+        F_1/F_0 of the viscosity that a pressure gradient along the motion meets.
+    axial_share : (n, m, k) array
+        a_k along the axis [1/(Pa s)].
+    heat_share : (4, n, m, k) array
+        Integrals over each layer that share out the dissipation; see `film.energy.dissipation`.
+    conduction : (n, m, k + 1) array
+        By how much eddies multiply the conduction between neighbouring layers, walls included.
+    """
+
+    laminar: LayerIntegrals
+    weight: Array
+    g_tangent: Array
+    axial_share: Array
+    heat_share: Array
+    conduction: Array
 
 
 def isoviscous_layers(shape: tuple[int, int], viscosity: float) -> LayerIntegrals:
@@ -60,6 +94,7 @@ def isoviscous_layers(shape: tuple[int, int], viscosity: float) -> LayerIntegral
         g=np.full(shape, 0.5),
         pressure_share=empty,
         shear_share=empty,
+        viscosity=np.full((*shape, 1), viscosity),
     )
 
 
@@ -69,7 +104,7 @@ def layer_integrals(viscosity: Array) -> LayerIntegrals:
     f0, f2, g = np.empty((n, m)), np.empty((n, m)), np.empty((n, m))
     pressure_share, shear_share = np.empty((n, m, k)), np.empty((n, m, k))
     _integrate(viscosity, f0, f2, g, pressure_share, shear_share)
-    return LayerIntegrals(f0, f2, f2, g, pressure_share, shear_share)
+    return LayerIntegrals(f0, f2, f2, g, pressure_share, shear_share, viscosity)
 
 
 @kernel

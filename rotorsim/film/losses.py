@@ -33,8 +33,12 @@ def friction_force(state: FilmState, fraction: Array) -> float:
     rise = np.stack([pressure - behind[0], behind[1] - pressure])
     share = np.where(operator.interior[:2], 0.5, 1.0)
     film = ~operator.fixed
+    turbulent = state.layers.turbulent
+    off = 0.0 if turbulent is None else state.layers.g - turbulent.g_tangent
     # Couette flow = U h (1 - G) width, rise over the spacing: int h p' (1 - G) dA = flow rise/U
     driven = np.sum(share * operator.couette * rise * film) / problem.surface_speed
+    # A turbulent film's pressure meets the tangent viscosity: tau = h p' (1 - G_t) + U/(h F_0).
+    driven += np.sum(share * operator.face_thickness[:2] * rise * film * operator.dy * off)
     dragged = np.sum(
         film
         * fraction

@@ -140,7 +140,7 @@ def film_problem(
         mesh=mesh,
         topology=face_topology(mesh, supply),
         geometry=film_geometry(bearing, mesh),
-        flow_law=flow_law("laminar"),
+        flow_law=flow_law(case),
         rupture=rupture_condition(case.film.cavitation, _oil_supply(bearing, mesh, case.thermal)),
         cold=cold,
     )
@@ -172,7 +172,7 @@ def film_state(
     displacement : (q,) array
         Film frame.
     layers : LayerIntegrals
-        Of laminar flow with the film's viscosity.
+        Of laminar flow with the film's viscosity, or of a film under the same law.
     velocity : (q,) array, optional
         Rates of the displacements [1/s]; at rest without.
     start, frozen : (n, m) bool arrays, optional
@@ -190,7 +190,8 @@ def film_state(
         raise NoFilmError(
             "the journal touches the bore: lobes and misalignment leave less room than asked"
         )
-    layers = problem.flow_law.integrals(layers, thickness[CENTER], problem.surface_speed)
+    laminar = layers if layers.turbulent is None else layers.turbulent.laminar
+    layers = problem.flow_law.integrals(laminar, thickness[CENTER], problem.surface_speed)
     operator = film_operator(problem.topology, thickness, layers, problem.surface_speed)
     squeeze = None
     if velocity is not None and np.any(velocity):

@@ -36,25 +36,28 @@ class FilmContact:
     energy : EnergyProblem
     film : (n, m) array
         Temperature of the layer next to the wall [K].
+    conductance : (n, m) array
+        Between that layer and the wall [W/K].
     elsewhere : float
         Heat that the film loses to oil and other wall per degree that it warms [W/K], estimated.
     """
 
     energy: EnergyProblem
     film: Array
+    conductance: Array
     elsewhere: float = math.inf
 
     @classmethod
     def bush(cls, energy: EnergyProblem, temperature: Array) -> FilmContact:
         """Return the contact with the bush of a film at `temperature`, (n, m, k) [K]."""
-        return cls(energy, temperature[:, :, 0])
+        return cls(energy, temperature[:, :, 0], energy.wall_conductance(0))
 
     @classmethod
     def shaft(
         cls, energy: EnergyProblem, temperature: Array, elsewhere: float = math.inf
     ) -> FilmContact:
         """Return the contact with the shaft."""
-        return cls(energy, temperature[:, :, -1], elsewhere)
+        return cls(energy, temperature[:, :, -1], energy.wall_conductance(-1), elsewhere)
 
     @property
     def layers(self) -> int:
@@ -73,7 +76,7 @@ class FilmContact:
 
     def heat(self, wall: Array | float) -> Array:
         """Return the heat that each cell gives to a wall at temperature `wall` [W], (n, m)."""
-        return 2.0 * self.energy.conductance * (self.film - wall)
+        return self.conductance * (self.film - wall)
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,17 @@ class Cavitation(StrEnum):
     JFO = "jfo"
 
 
+class FlowRegime(StrEnum):
+    """How the film flows (see docs: theory)."""
+
+    LAMINAR = "laminar"
+    TURBULENT = "turbulent"
+    """Reichardt's eddy viscosity across the film."""
+    NG_PAN = "ng_pan"
+    CONSTANTINESCU = "constantinescu"
+    HIRS = "hirs"
+
+
 class Inception(StrEnum):
     """Where the film begins."""
 
@@ -77,6 +88,30 @@ class ShaftModel(StrEnum):
     INSULATED = "insulated"
     """Isothermal at the temperature at which it takes no net heat from the film."""
     GIVEN = "given"
+
+
+class _TransitionEntry(Leaf):
+    """Two local Reynolds numbers, or Taylor's criterion."""
+
+    def read(self, value: object) -> tuple[float, float] | str:
+        return _checked_transition(value)
+
+
+def _checked_transition(value: object) -> tuple[float, float] | str:
+    """Return two local Reynolds numbers or "taylor"; InputError with what is allowed."""
+    if value == "taylor":
+        return "taylor"
+    numbers = [
+        float(number)
+        for number in (value if isinstance(value, (list, tuple)) else ())
+        if isinstance(number, (int, float)) and not isinstance(number, bool)
+    ]
+    if len(numbers) == 2 and (0.0 <= numbers[0] < numbers[1] < 1e9 or numbers == [0.0, 0.0]):
+        return numbers[0], numbers[1]
+    raise InputError(
+        'must be "taylor" or two local Reynolds numbers that ascend, for example [500, 1000]; '
+        "[0, 0] for a film turbulent throughout"
+    )
 
 
 class _ShaftEntry(Leaf):
@@ -143,6 +178,9 @@ class FilmSettings:
 
     frequency_ratios : Whirl over shaft frequencies, ascending, at which K and C are given besides.
     rotations : Give K and C over the journal's rotations as well.
+    transition : Local Reynolds numbers rho U h/mu up to which the film is laminar and from which it is
+        turbulent, unless `flow` is laminar; (0, 0): turbulent throughout. ``taylor``: from 41.2
+        sqrt(R/c), where vortices begin, to twice that.
     """
 
     cavitation: Cavitation = Cavitation.REYNOLDS
@@ -154,9 +192,15 @@ class FilmSettings:
         tuple[Annotated[float, Number(above=0.0)], ...], Key("frequency_ratio")
     ] = ()
     rotations: bool = False
+    flow: FlowRegime = FlowRegime.LAMINAR
+    transition: Annotated[tuple[float, float] | str, _TransitionEntry()] = (500.0, 1000.0)
 
     def __post_init__(self) -> None:
         check(self, "film")
+        try:
+            object.__setattr__(self, "transition", _checked_transition(self.transition))
+        except InputError as error:
+            raise InputError(error.message, key="film.transition", value=self.transition) from None
         ratios = self.frequency_ratios
         if len(ratios) > _MAX_RATIOS:
             raise InputError(f"must hold at most {_MAX_RATIOS} entries", key="film.frequency_ratio")
