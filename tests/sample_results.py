@@ -46,6 +46,7 @@ def point_of(
     fields = FilmFields(
         theta, y, np.array([0.25, 0.5, 0.75]), np.full(pressure.shape, 5e-5), pressure,
         np.ones(pressure.shape), across, np.full(across.shape, 0.02), across[..., 0], 313.15,
+        np.zeros(pressure.shape),
     )  # fmt: skip
     given: dict[str, Any] = {
         "status": SolveStatus.CONVERGED, "message": "", "thermal_model": "thd",

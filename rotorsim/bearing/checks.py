@@ -6,7 +6,16 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..model import BushModel, Case, Inception, InletModel, LoadTarget, ShaftModel, ThermalModel
+from ..model import (
+    BushModel,
+    Case,
+    FlowRegime,
+    Inception,
+    InletModel,
+    LoadTarget,
+    ShaftModel,
+    ThermalModel,
+)
 from ..model.lubricant import ZERO_CELSIUS
 
 if TYPE_CHECKING:
@@ -152,7 +161,7 @@ def regime_warnings(
     numbers = derived_numbers(case, speed)
     thinning = 1.0 if mean_viscosity is None else numbers.viscosity / mean_viscosity
     found = [
-        *_flow_warnings(numbers.reynolds_number * thinning, numbers.taylor_number * thinning),
+        *_flow_warnings(case, numbers.reynolds_number * thinning, numbers.taylor_number * thinning),
         *_temperature_warnings(case, max_temperature),
         *_held_walls(case, max_temperature, heat_balance),
     ]
@@ -171,17 +180,21 @@ def regime_warnings(
     return tuple(found)
 
 
-def _flow_warnings(reynolds: float, taylor: float) -> list[str]:
-    found = []
+def _flow_warnings(case: Case, reynolds: float, taylor: float) -> list[str]:
+    """What a laminar film leaves out; nothing of a film whose flow law knows turbulence."""
+    found: list[str] = []
+    if case.film.flow is not FlowRegime.LAMINAR:
+        return found
     if reynolds > TURBULENT_REYNOLDS:
         found.append(
             f"Reynolds number {reynolds:.0f} is above {TURBULENT_REYNOLDS:.0f}: the film is "
-            "turbulent, the laminar model underestimates friction and stiffness"
+            "turbulent, the laminar model underestimates friction and stiffness; write "
+            'film.flow = "turbulent"'
         )
     if taylor > CRITICAL_TAYLOR:
         found.append(
             f"Taylor number {taylor:.1f} is above {CRITICAL_TAYLOR}: vortices are expected, the "
-            "laminar model underestimates friction"
+            'laminar model underestimates friction; write film.flow = "turbulent"'
         )
     return found
 

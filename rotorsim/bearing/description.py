@@ -25,11 +25,13 @@ if TYPE_CHECKING:
     from .operating_point import OperatingPoint
     from .table import CoefficientTable
 
+_TURBULENT = ("reynolds_number", "laminar_share", "transitional_share", "turbulent_share")
+"""Left out of a laminar point's rows."""
 _POINT_ROWS = (
     "eccentricity_ratio", "attitude_angle", "load", "sommerfeld_number", "min_film_thickness",
     "max_pressure", "max_temperature", "mean_temperature", "shaft_temperature",
     "hot_radial_clearance", "hot_preload", "outlet_temperature", "friction_force", "power_loss",
-    "side_flow", "critical_mass", "whirl_frequency_ratio", "wall_heat_share", "heat_imbalance",
+    "side_flow", "critical_mass", "whirl_frequency_ratio", "wall_heat_share", "heat_imbalance", *_TURBULENT,
 )  # fmt: skip
 """Quantities of an operating point, in the order in which they are shown."""
 _THERMAL = (
@@ -101,6 +103,8 @@ def point_rows(point: OperatingPoint) -> list[Row]:
     """What a point comes to, row by row: equilibrium, film, heat, rigid rotor, solver."""
     rows = []
     for name in _POINT_ROWS:
+        if name in _TURBULENT and not point.laminar_share < 1.0:
+            continue
         digits = QUANTITIES[name].digits
         text = point_text(point, name, 4 if digits == 3 else digits)
         if text != "-" or name not in _THERMAL:

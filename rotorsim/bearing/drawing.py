@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..model import Bearing, Case, Groove, LoadTarget, ThermalModel
+from ..model import Bearing, Case, FlowRegime, Groove, LoadTarget, ThermalModel
 from ..model.bearing import angle_between
 from ..model.lubricant import ZERO_CELSIUS
 from .checks import CRITICAL_TAYLOR, TURBULENT_REYNOLDS, DerivedNumbers, derived_numbers
@@ -107,7 +107,8 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
             f"adiabatic temperature rise {rise:.0f} K is above {_GREAT_HEATING:.0f} K: this oil "
             "heats itself thin at once; check viscosity, clearance and speed"
         )
-    return (*found, *_warm_flow(numbers))
+    laminar = case.film.flow is FlowRegime.LAMINAR
+    return (*found, *(_warm_flow(numbers) if laminar else ()))
 
 
 def _warm_flow(numbers: DerivedNumbers) -> list[str]:

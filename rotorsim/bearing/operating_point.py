@@ -50,6 +50,8 @@ class FilmFields:
         Of the bore [K].
     shaft_temperature : float
         Of the journal's surface [K].
+    turbulence : (n, m) array
+        0 where the film is laminar, 1 where it is turbulent, between in the transition.
     """
 
     theta: Array
@@ -62,6 +64,7 @@ class FilmFields:
     viscosity: Array
     bush_temperature: Array
     shaft_temperature: float
+    turbulence: Array
 
 
 @dataclass(frozen=True)
@@ -254,6 +257,10 @@ class OperatingPoint:
         Mean of the oil that leaves at both ends [K]: supply temperature plus the heat that the oil
         carries off over rho c_p times the side flow. THD with ``inlet = mixing`` only: otherwise
         warm oil also leaves where fresh oil replaces it.
+    reynolds_number : float
+        Largest local rho U h/mu, mu the mean 1/F_0 across the film, laminar.
+    laminar_share, transitional_share, turbulent_share : float
+        Parts of the film's area by its flow; (1, 0, 0) with ``film.flow = laminar``.
     fields : FilmFields or None
     """
 
@@ -296,6 +303,10 @@ class OperatingPoint:
     coefficients_full: FullCoefficients | None = None
     pads: tuple[PadResult, ...] = ()
     critical_mass_synchronous: float | None = None
+    reynolds_number: float = math.nan
+    laminar_share: float = math.nan
+    transitional_share: float = math.nan
+    turbulent_share: float = math.nan
     fields: FilmFields | None = field(default=None, repr=False)
 
     @property

@@ -211,6 +211,7 @@ def operating_point(
         hot_radial_clearance=None if hot is None else hot.radial_clearance,
         hot_preload=None if hot is None else _mean_preload(hot),
         outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat, demand),
+        **_flow_regimes(solution),
         fields=_fields(solution, fraction) if keep_fields else None,
     )  # fmt: skip
 
@@ -273,6 +274,29 @@ def _shaft_temperature(solution: FilmSolution) -> float:
     if solution.thermal is None:
         return solution.problem.thermal.supply_temperature
     return solution.thermal.heat.shaft
+
+
+def _flow_regimes(solution: FilmSolution) -> dict[str, float]:
+    """Largest local Reynolds number rho U h F_0, and the parts of the film's area by its flow."""
+    state, film = solution.state, ~solution.state.operator.fixed
+    turbulent = state.layers.turbulent
+    laminar = state.layers if turbulent is None else turbulent.laminar
+    local = state.center_thickness * laminar.f0 * solution.problem.surface_speed
+    weight, area = _turbulence(solution)[film], state.operator.area[film]
+    shares = [float(np.sum(area[part])) for part in (weight <= 0.0, weight >= 1.0)]
+    still, grown = (share / float(area.sum()) for share in shares)
+    return {
+        "reynolds_number": solution.problem.lubricant.density * float(local[film].max()),
+        "laminar_share": still,
+        "transitional_share": max(1.0 - still - grown, 0.0),
+        "turbulent_share": grown,
+    }
+
+
+def _turbulence(solution: FilmSolution) -> Array:
+    """Weight of turbulent against laminar flow, (n, m)."""
+    turbulent = solution.state.layers.turbulent
+    return np.zeros(solution.problem.mesh.shape) if turbulent is None else turbulent.weight
 
 
 def _outlet_temperature(
@@ -339,6 +363,7 @@ def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
         viscosity=whole(viscosity),
         bush_temperature=whole(bush),
         shaft_temperature=_shaft_temperature(solution),
+        turbulence=whole(_turbulence(solution)),
     )
 
 

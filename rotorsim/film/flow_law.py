@@ -103,16 +103,15 @@ class TurbulentFlow:
         n, m, across = layers.viscosity.shape
         shares = layers.pressure_share.shape[2]
         stresses = self._stresses.setdefault((n, m, across), np.zeros((n, m)))
-        made = [np.empty((n, m)) for _ in range(6)]
-        weight, f0, f2, f2_axial, g, g_tangent = made
+        weight, f0, f2, f2_axial, g, g_tangent = (np.empty((n, m)) for _ in range(6))
         rates = np.empty((3, n, m))
         pressure, axial, shear = (np.empty((n, m, shares)) for _ in range(3))
         heat, conduction = np.empty((4, n, m, shares)), np.empty((n, m, shares + 1))
         integrate(
             layer_tables(across), layers.viscosity, thickness, layers.f0, self.density,
             surface_speed, lower, upper, np.array(self.bulk or ((0.0,) * 4,) * 3),
-            self.diffusion if shares else 0.0, stresses, *made, rates, pressure, axial, shear, heat,
-            conduction,
+            self.diffusion if shares else 0.0, stresses, weight, f0, f2, f2_axial, g, g_tangent,
+            rates, pressure, axial, shear, heat, conduction,
         )  # fmt: skip
         turbulent = TurbulentIntegrals(layers, weight, g_tangent, axial, heat, conduction)
         return replace(

@@ -178,9 +178,9 @@ class FilmSettings:
 
     frequency_ratios : Whirl over shaft frequencies, ascending, at which K and C are given besides.
     rotations : Give K and C over the journal's rotations as well.
-    transition : Local Reynolds numbers rho U h/mu up to which the film is laminar and from which it is
-        turbulent, unless `flow` is laminar; (0, 0): turbulent throughout. ``taylor``: from 41.2
-        sqrt(R/c), where vortices begin, to twice that.
+    transition : Local Reynolds numbers rho U h/mu up to which the film is laminar and from which
+        it is turbulent, unless `flow` is laminar; (0, 0): turbulent throughout. ``taylor``: from
+        41.2 sqrt(R/c), where vortices begin, to twice that.
     """
 
     cavitation: Cavitation = Cavitation.REYNOLDS

@@ -188,8 +188,6 @@ def test_moment_coefficients_of_a_short_centred_bearing():
 class _BulkLaw:
     """k_x = 12 + 0.0136 Re^0.9, k_y = 12 + 0.0043 Re^0.96 (Ng & Pan), for the plumbing's sake."""
 
-    name = "bulk"
-
     def integrals(self, layers, thickness, surface_speed):
         reynolds = 1e5 * surface_speed * thickness * layers.f0
         along, across = 0.0136 * reynolds**0.9, 0.0043 * reynolds**0.96

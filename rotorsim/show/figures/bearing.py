@@ -7,6 +7,7 @@ from typing import Any
 
 import matplotlib
 import numpy as np
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
@@ -203,6 +204,7 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
     for row, point, film, warm in zip(axes, points, films, heat, strict=True):
         label = axis_title(f"{model_label(point.thermal_model)}: pressure", "MPa")
         _contours(figure, row[0], film, _pressure(film), (0.0, top), "viridis", label)
+        _mark_turbulence(row[0], film)
         if not known:
             continue
         if warm is None:
@@ -267,6 +269,24 @@ def _contours(
     bar = figure.colorbar(filled, ax=ax, pad=0.02)
     bar.locator = MaxNLocator(6)
     bar.update_ticks()
+
+
+def _mark_turbulence(ax: Axes, film: FilmFields) -> None:
+    """Dots where the film is in transition, crosses where it is turbulent."""
+    if not film.turbulence.max() > 0.0:
+        return
+    angle, order = _angles(film.theta)
+    levels = [1e-9, 1.0 - 1e-9, 1.1]
+    with rc_context({"hatch.color": "w", "hatch.linewidth": 0.4}):
+        ax.contourf(
+            angle,
+            film.y * 1e3,
+            film.turbulence[order].T,
+            levels,
+            colors="none",
+            hatches=["..", "xx"],
+        )
+    ax.set_title(f"{ax.get_title()}; dots: transition, crosses: turbulent", fontsize=8)
 
 
 def _angles(theta: Array) -> tuple[Array, NDArray[np.intp]]:

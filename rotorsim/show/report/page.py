@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from ...atomic import write_text
 from ...bearing.description import grouped_warnings, point_title
 from ...bearing.table_data import CONVENTIONS
-from ...rows import facts_html
+from ...rows import RPM, facts_html
 from ...study.inputs import input_rows
 from . import html, results
 from .verdict import headline
@@ -35,8 +35,15 @@ _PLACES = {
     "film": "static", "film_profiles": "static", "coefficients": "coefficients",
     "cascade": "orbits", "orbits": "orbits",
 }  # fmt: skip
+_FLOWS = {
+    "laminar": "laminar",
+    "turbulent": "turbulent by Reichardt's eddy viscosity",
+    "ng_pan": "turbulent by the law of Ng & Pan",
+    "constantinescu": "turbulent by Constantinescu's law",
+    "hirs": "turbulent by Hirs' law",
+}
 _MODEL_LIMITS = (
-    "The film is laminar and the shaft and bush are rigid; the bush does not expand.",
+    "The shaft and bush are rigid; the bush does not expand.",
     "K and C are those of small motions about the equilibrium; a growing motion soon leaves them.",
     "The critical mass and the map hold for a rigid rotor on two like bearings.",
 )
@@ -90,7 +97,7 @@ def _parts(found: Results, when: datetime.datetime | None) -> Iterator[str]:
     yield html.section("Static results", results.top_points(found.points), *figures.pop("static"))
     yield html.section("Stiffness and damping", *figures.pop("coefficients"))
     yield html.section("Orbits", results.orbits(found.orbits), *figures.pop("orbits"))
-    yield html.section("Conventions and limits", _conventions())
+    yield html.section("Conventions and limits", _conventions(found))
     yield '<div class="appendix">'
     yield html.section("Appendix A: operating points", results.all_points(found.points))
     yield html.section("Appendix B: stiffness and damping", results.coefficients(found.table))
@@ -127,6 +134,23 @@ def _warnings(found: Results) -> list[str]:
     return lines
 
 
+def _flow(found: Results) -> str:
+    """The film's flow law, and which part of it flows how at the highest speed."""
+    film = next(iter(found.scenario.cases())).film
+    text = f"The film is {_FLOWS[film.flow]}"
+    if film.flow == "laminar":
+        return f"{text}."
+    span = film.transition
+    limits = "Taylor's criterion" if isinstance(span, str) else f"Re {span[0]:g} to {span[1]:g}"
+    top = [point for point in found.points if point.laminar_share >= 0.0]
+    if top:
+        last = max(top, key=lambda point: point.speed)
+        parts = (last.laminar_share, last.transitional_share, last.turbulent_share)
+        said = " %, ".join(f"{100.0 * part:.0f}" for part in parts)
+        limits += f"; laminar, in transition, turbulent at {last.speed * RPM:.0f} rpm: {said} %"
+    return f"{text} (transition by {limits})."
+
+
 def _not_rigid(found: Results) -> str:
     """Whose critical mass and map are shown, where the scenario's rotor is another one."""
     if not found.curves or not found.curves[0].rotor or found.curves[0].mass is not None:
@@ -160,7 +184,7 @@ def _no_warnings() -> str:
     return html.paragraph("None: every point converged within the model's range.")
 
 
-def _conventions() -> str:
+def _conventions(found: Results) -> str:
     return html.listing(
         [
             " ".join(CONVENTIONS),
@@ -171,6 +195,7 @@ def _conventions() -> str:
             "T out: supply temperature plus the heat that the oil carries off over ρ c_p times the "
             "side flow, where warm and supplied oil mix. To walls: part of the heat that leaves "
             "through bush and shaft.",
+            _flow(found),
             *_MODEL_LIMITS,
         ]
     )
