@@ -20,7 +20,15 @@ from ..film.linearization import linearize
 from ..film.pad_solution import solve_pads
 from ..film.problem import FilmProblem, FilmState, film_state
 from ..film.solution import FilmSolution, solve_film
-from ..model import Bearing, Case, EccentricityTarget, Inception, LoadTarget, ThermalModel
+from ..model import (
+    Bearing,
+    Case,
+    EccentricityTarget,
+    FlowRegime,
+    Inception,
+    LoadTarget,
+    ThermalModel,
+)
 from ..status import SolveStatus
 from .film_map import MAPPED, Progress, film_force_map
 from .force_map import FilmMapForce
@@ -201,6 +209,7 @@ def can_be_mapped(case: Case) -> bool:
         and case.thermal.model is ThermalModel.ISOTHERMAL
         and case.thermal.expansion is None
         and case.film.cavitation in MAPPED
+        and case.film.flow is FlowRegime.LAMINAR
         and case.film.inception is Inception.FREE
     )
 
