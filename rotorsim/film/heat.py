@@ -422,7 +422,9 @@ def _enthalpy_out(
             open_, out = _exits(energy), leaving[0]
         else:
             open_, out = ~energy.interior[face] & ~energy.fixed, leaving[1]
-        entering = inlet_temperature[face][open_].reshape(int(open_.sum()), -1)
+        entering = inlet_temperature[face][open_]
+        if entering.ndim == 1:
+            entering = entering[:, None]
         if face == WEST:
             part = energy.carry_over[open_][:, None]
             entering = part * before[open_] + (1.0 - part) * entering
