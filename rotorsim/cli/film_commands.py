@@ -311,10 +311,13 @@ def report(
     from ..files.scenario import load_scenario
     from ..show.report import write_report
     from ..study.main_job import compute
+    from .machine_commands import is_machine, report_machine
 
-    loaded = load_scenario(scenario)
     page = file or Path("reports") / f"{scenario.stem}.html"
     check_file(page, ".html", scenario)
+    if is_machine(scenario):
+        return report_machine(output, scenario, page, workers)
+    loaded = load_scenario(scenario)
     table = table_path(scenario, Path())
     points, coefficients = computed_table(output, loaded, table, workers, scheduler)
     results = compute(loaded, points, coefficients, output.note)

@@ -31,14 +31,15 @@ def write_machine_figures(
 
     return [
         path
-        for name, figure in _figures(results, study)
+        for name, figure in machine_figures(results, study)
         for path in save_figure(figure, folder / name)
     ]
 
 
-def _figures(
+def machine_figures(
     results: Mapping[str, MachineResult], study: LateralStudy
 ) -> Iterator[tuple[str, Figure]]:
+    """Give names and figures of all that a machine's results have."""
     from .figures import machine as draw
 
     last = list(results.values())[-1]
@@ -56,6 +57,8 @@ def _figures(
         yield "mode_shapes", draw.mode_shapes(last.machine.rotor, last.modes, top, title=title)
     if study.responses:
         yield "unbalance_response", draw.bode_at_probes(study.responses, continuous, title)
+    if study.decrement_curves:
+        yield "destabilising", draw.decrement_over_stiffness(study.decrement_curves, title)
     if description.support and last.known.size:
         rotor = last.machine.rotor
         nodes = [node_at(rotor, entry.at) for entry in description.support]

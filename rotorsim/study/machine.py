@@ -344,7 +344,7 @@ class MachineAnalysis:
     def _cases(self, loads: Array) -> list[Case]:
         names = self.description.support_names
         return [
-            self._case(i, self.description.bearings[name], loads[i])
+            self.case(i, self.description.bearings[name], loads[i])
             for i, name in enumerate(names)
             if name in self.description.bearings
         ]
@@ -367,7 +367,7 @@ class MachineAnalysis:
                 points[name] = tuple(found[k * size : (k + 1) * size])
         else:
             for i, name, scenario in films:
-                film = _Film(lambda load, i=i, s=scenario: self._case(i, s, load), self.progress)
+                film = _Film(lambda load, i=i, s=scenario: self.case(i, s, load), self.progress)
                 points[name] = tuple(
                     film.point(load, float(speed))
                     for speed, load in zip(self.speeds, loads[:, i], strict=True)
@@ -403,7 +403,7 @@ class MachineAnalysis:
             if name in self.description.bearings:
                 scenario = self.description.bearings[name]
                 films[i] = _Film(
-                    lambda load, i=i, s=scenario: self._case(i, s, load), lambda *_: None
+                    lambda load, i=i, s=scenario: self.case(i, s, load), lambda *_: None
                 )
         points: dict[str, list[OperatingPoint]] = {names[i]: [] for i in films}
         statics: list[StaticEquilibrium] = []
@@ -439,7 +439,7 @@ class MachineAnalysis:
         """Displacements of the housings along x and y [m]; upwards is -x."""
         return np.array([(-entry.elevation, 0.0) for entry in self.description.support])
 
-    def _case(self, i: int, scenario: Scenario, load: Array) -> Case:
+    def case(self, i: int, scenario: Scenario, load: Array) -> Case:
         """Film of support i under its load [N], in the load's frame."""
         wanted = {str(model) for model in scenario.thermal_models}
         model = self.model if self.model in wanted else str(scenario.thermal_models[0])
@@ -492,6 +492,35 @@ class MachineAnalysis:
             stand = entry.pedestal
             support = Pedestal(support, stand.mass, stand.stiffness, stand.damping)
         return support
+
+
+def points_with_fields(
+    result: MachineResult, places: Sequence[int]
+) -> dict[str, list[OperatingPoint]]:
+    """Converged films of a result, solved again with their fields, by the support's name.
+
+    places : Which of the speeds, ascending.
+    """
+    from ..bearing.solve import solve_case
+
+    def no_sweep(_cases: list[Case], _speeds: list[float]) -> list[OperatingPoint]:
+        return []
+
+    analysis = MachineAnalysis(
+        Variant(result.description), result.machine.rotor, result.thermal_model, result.speeds,
+        no_sweep,
+    )  # fmt: skip
+    found: dict[str, list[OperatingPoint]] = {}
+    for i, state in enumerate(result.supports):
+        warm = None
+        for k in places if state.points else ():
+            case = analysis.case(i, result.description.bearings[state.name], state.load[k])
+            speed = float(result.speeds[k])
+            point, warm = solve_case(case, speed, initial=warm, keep_fields=True)
+            warm = warm if point.converged else None
+            if point.converged:
+                found.setdefault(state.name, []).append(point)
+    return found
 
 
 def _alike(loads: Array) -> bool:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ...files.machine import MachineFile
 from ...machine.branches import Modes
 from ...machine.critical_map import CriticalSpeedMap
+from ...machine.destabilising import DecrementCurve
 from ...machine.output_feedback import LinearMotion
 from ...machine.peaks import ProbeResponse
 from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpeed
@@ -53,7 +54,7 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
     beam = machine.rotor.beam
     ax = axes_or_new(ax, (8.2, 3.6))
     top = max(s.outer_diameter for s in beam.sections) / 2.0
-    top = max([top, *(_disc_size(disc, beam)[0] for disc in beam.discs if disc.polar_inertia)])
+    top = max([top, *(disc_size(disc, beam)[0] for disc in beam.discs if disc.polar_inertia)])
     for disc in beam.discs:
         _draw_disc(ax, disc, beam, top)
     for section in sorted(beam.sections, key=lambda one: one.layer):
@@ -115,7 +116,7 @@ def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
     ax.update_datalim([(z[0], -outer.max()), (z[1], outer.max())])
 
 
-def _disc_size(disc: Disc, beam: Beam) -> tuple[float, float]:
+def disc_size(disc: Disc, beam: Beam) -> tuple[float, float]:
     """Radius and width [m] of a steel disc with the same mass and polar inertia on the shaft."""
     shaft = _radius(beam, disc.at)
     outer = np.sqrt(max(2.0 * disc.polar_inertia / disc.mass - shaft**2, 1.2 * shaft**2))
@@ -126,7 +127,7 @@ def _disc_size(disc: Disc, beam: Beam) -> tuple[float, float]:
 def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
     x = disc.at * _MILLI
     if disc.polar_inertia > 0.0 and disc.mass > 0.0:
-        outer, width = _disc_size(disc, beam)
+        outer, width = disc_size(disc, beam)
         shaft = _radius(beam, disc.at)
         for low in (shaft, -outer):
             box = (x - 0.5 * width * _MILLI, low * _MILLI)
@@ -156,7 +157,7 @@ def _outermost(beam: Beam, at: float) -> float:
     found = _radius(beam, at)
     for disc in beam.discs:
         if disc.polar_inertia > 0.0 and disc.mass > 0.0:
-            outer, width = _disc_size(disc, beam)
+            outer, width = disc_size(disc, beam)
             found = max(found, outer) if abs(at - disc.at) <= 0.5 * width else found
     return found
 
@@ -448,3 +449,28 @@ def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str =
     lower.set(xlabel="time [ms]", ylabel="force at the actuator [N]")
     lower.legend(loc="upper right")
     return figure
+
+
+def decrement_over_stiffness(
+    curves: Sequence[DecrementCurve], title: str = "", ax: Axes | None = None
+) -> Figure:
+    """Logarithmic decrement over destabilising stiffness, with Q_A, Q0 and the limit of level I."""
+    ax = axes_or_new(ax, (6.2, 3.8))
+    for number, one in enumerate(curves):
+        look = series_style("", number)
+        label = f"{one.speed * RPM:.0f} rpm"
+        if one.threshold is not None:
+            label += f", Q0 {one.threshold * 1e-6:.4g} MN/m"
+        ax.plot(one.stiffness * 1e-6, one.decrement, label=label, **look)
+        at = one.anticipated * 1e-6
+        ax.plot(at, one.anticipated_decrement, "o", color=look["color"], mfc="w", zorder=5)
+        ax.annotate("Q_A", (at, one.anticipated_decrement), xytext=(6, 6), fontsize=8,
+                    textcoords="offset points")  # fmt: skip
+    ax.axhline(0.1, color="#009E73", lw=1.0, ls="--", label="limit at Q_A: 0.1")
+    ax.axhline(0.0, color="#8c1d2f", lw=1.0)
+    ax.set(
+        xlabel="destabilising stiffness [MN/m]", ylabel="logarithmic decrement [-]",
+        title=caption(title),
+    )  # fmt: skip
+    ax.legend(loc="best")
+    return figure_of(ax)

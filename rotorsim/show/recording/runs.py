@@ -72,7 +72,7 @@ def runs_of(orbits: Sequence[Orbit]) -> list[Run]:
     return [Run(*pair) for pair in zip(run_names(kept), kept, strict=True)]
 
 
-def _time_index(seconds: ArrayLike) -> rr.TimeColumn:
+def time_index(seconds: ArrayLike) -> rr.TimeColumn:
     """Column of times; rounded, since the library cuts to the nanosecond below."""
     nanoseconds = np.round(np.atleast_1d(np.asarray(seconds, dtype=float)) * 1e9)
     return rr.TimeColumn(TIME, duration=nanoseconds.astype("timedelta64[ns]"))
@@ -92,7 +92,7 @@ def speed_index(speed: ArrayLike) -> rr.TimeColumn:
 
 def run_index(run: Run, rows: _Indices) -> list[rr.TimeColumn]:
     """Both timelines of a run at some of its samples."""
-    return [_time_index(run.orbit.t[rows]), _revolution_index(run.orbit.revolutions[rows])]
+    return [time_index(run.orbit.t[rows]), _revolution_index(run.orbit.revolutions[rows])]
 
 
 def thin(count: int, limit: int) -> _Indices:
@@ -148,7 +148,7 @@ def indices_of_frames(
         return places
     if times.size:
         turns = np.interp(times, run.orbit.t, run.orbit.revolutions)
-        index = [_time_index(times), _revolution_index(turns)]
+        index = [time_index(times), _revolution_index(turns)]
         return [*places, (index, known.size + np.arange(times.size))]
     rows, numbers = _frame_rows(run, known)
     return [*places, (run_index(run, rows), numbers)]

@@ -118,6 +118,15 @@ def write_recording(
     Nothing is sent anywhere: the stream writes to the file alone. Two identical runs give files
     that differ in their time stamps only (``rerun rrd compare --unordered`` says so).
     """
+    return write_stream(
+        path, _layout(contents, page), lambda stream: _log_contents(stream, contents)
+    )
+
+
+def write_stream(
+    path: str | Path, blueprint: rrb.Blueprint, log: Callable[[rr.RecordingStream], None]
+) -> Path:
+    """Write a recording's file, whole or not at all: its layout, and what `log` writes."""
     target = Path(path)
     if target.suffix.lower() != ".rrd" or not target.name:
         raise InputError(
@@ -127,8 +136,8 @@ def write_recording(
     stream = rr.RecordingStream(APPLICATION, send_properties=False)
     with replacing(target) as temporary:
         with stream:
-            stream.save(temporary, default_blueprint=_layout(contents, page))
-            _log_contents(stream, contents)
+            stream.save(temporary, default_blueprint=blueprint)
+            log(stream)
         stream.disconnect()
     return target
 
@@ -274,8 +283,8 @@ def _grouped(contents: RecordingContents, make: Callable[[list[Run]], _Part]) ->
     return _tabs(parts)
 
 
-def _film_views(contents: RecordingContents, flat: bool) -> list[_Part]:
-    films = contents.films
+def film_views(films: Sequence[FilmFrame], flat: bool) -> list[_Part]:
+    """Views of every film, wrapped or rolled out."""
     if not films:
         return []
     make = film_view.unwrapped_view if flat else film_view.film_view
@@ -298,11 +307,11 @@ def _overview(contents: RecordingContents) -> _Part:
     front = FRONTS.get(contents.kind, _WHOLE_JOB)
     frequencies: list[_Part] = _frequency_views(contents) if front.frequencies else []
     middle: list[_Part] = [_tabs(frequencies)] if frequencies else []
-    films = _film_views(contents, flat=False)
+    films = film_views(contents.films, flat=False)
     if middle and films:
         middle.append(_tabs(films))
     else:
-        middle += films[-2:] if len(films) > 1 else [*films, *_film_views(contents, flat=True)]
+        middle += films[-2:] if len(films) > 1 else [*films, *film_views(contents.films, flat=True)]
     stability: list[_Part] = [chart.view for chart in contents.map_charts[:1]]
     if contents.eigenvalue_chart is not None:
         # The map is that of a rigid rotor: another one has its eigenvalues in front.
@@ -362,7 +371,7 @@ def _named(part: _Part, name: str) -> _Part:
 
 
 def _film(contents: RecordingContents) -> _Part | None:
-    views = [*_film_views(contents, flat=False), *_film_views(contents, flat=True)]
+    views = [*film_views(contents.films, flat=False), *film_views(contents.films, flat=True)]
     return rrb.Grid(*views, grid_columns=len(views) // 2, name="Film") if views else None
 
 

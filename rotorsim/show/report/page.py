@@ -66,16 +66,21 @@ def report_page(found: Results, when: datetime.datetime | None = None) -> str:
     when : datetime, optional
         Date of the report; now by default.
     """
-    title = escape(found.scenario.title)
-    style = (files("rotorsim.show.report") / "style.css").read_text(encoding="utf-8")
     body = "\n".join(part for part in _parts(found, when) if part)
+    return document(found.scenario.title, body)
+
+
+def document(title: str, body: str) -> str:
+    """Whole page of HTML from its title and what it holds."""
+    said = escape(title)
+    style = (files("rotorsim.show.report") / "style.css").read_text(encoding="utf-8")
     # The policy forbids whatever would have to be fetched; nothing here runs as a script.
     policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f'<link rel="icon" href="data:,">\n<title>{title}</title>\n<style>\n{style}</style>\n'
+        f'<link rel="icon" href="data:,">\n<title>{said}</title>\n<style>\n{style}</style>\n'
         f"</head>\n<body>\n{body}\n</body>\n</html>\n"
     )
 

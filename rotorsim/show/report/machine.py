@@ -1,0 +1,304 @@
+"""The report of a machine: its drawing, bearings at load, modes, response, checks, verdicts."""
+
+from __future__ import annotations
+
+import datetime
+import math
+from collections.abc import Iterator
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...atomic import write_text
+from ...rows import RPM, Row, facts_html, number, table_html
+from ...study import machine_tables as tables
+from . import html
+
+if TYPE_CHECKING:
+    from ...study.lateral import LateralStudy
+    from ...study.machine import MachineResult
+
+_CAPTIONS = {
+    "rotor": "The rotor to scale: sections, discs, bearings, probes.",
+    "campbell": "Campbell diagram: damped natural frequencies over speed, and critical speeds.",
+    "growth_rate": "Growth rates over speed: unstable above 0.",
+    "mode_shapes": "Mode shapes at the highest speed: orbits, and the centre line at one instant.",
+    "critical_speed_map": "Undamped critical speeds over support stiffness, and the bearings' own.",
+    "unbalance_response": "Response at the probes to the unbalances of the file.",
+    "destabilising": "Logarithmic decrement over destabilising stiffness.",
+}
+_PLACES = {
+    "rotor": "rotor", "campbell": "modes", "growth_rate": "verdict", "mode_shapes": "modes",
+    "critical_speed_map": "critical", "unbalance_response": "response",
+    "destabilising": "sensitivity",
+}  # fmt: skip
+
+
+def write_machine_report(
+    results: dict[str, MachineResult], study: LateralStudy, path: str | Path,
+    when: datetime.datetime | None = None,
+) -> Path:  # fmt: skip
+    """Write the report of a machine's results, whole or not at all.
+
+    results : By thermal model; modes, response and checks are those of the last.
+    """
+    from .page import document
+
+    last = results[next(reversed(results))]
+    title = last.description.title
+    target = Path(path)
+    parts = _parts(results, study, when)
+    write_text(target, document(title, "\n".join(part for part in parts if part)))
+    return target
+
+
+def _parts(
+    results: dict[str, MachineResult], study: LateralStudy, when: datetime.datetime | None
+) -> Iterator[str]:
+    last = results[next(reversed(results))]
+    machine = last.description
+    figures = _figures(results, study)
+    title = escape(machine.title)
+    yield f"<header>\n<h1>{title}</h1>\n{_origin(machine, when)}\n</header>"
+    yield _headline(results)
+    warnings = [*tables.failure_lines(results), *study.notes]
+    none = html.paragraph("None: every film and every static equilibrium converged.")
+    yield html.section("Warnings", html.listing(warnings, "warnings") or none)
+    yield html.section("Rotor", *figures["rotor"], _rotor(last), _shaft_tables(last))
+    yield html.section("Bearings at their load", _bearings(results), _statics(last))
+    yield html.section(
+        "Isothermal against thermal" if len(results) > 1 else "Stability over speed",
+        _comparison(results), html.listing(map(_sentence, tables.heating_lines(results))),
+        *figures["verdict"],
+    )  # fmt: skip
+    yield html.section("Modes", _table(tables.mode_rows(last)), *figures["modes"])
+    critical = [_table(one) for one in tables.critical_rows(results)]
+    yield html.section("Critical speeds", *critical, *figures["critical"])
+    response = [_table(one) for one in tables.peak_rows(study)]
+    checks = [_table(one) for one in tables.check_rows(study)]
+    yield html.section("Unbalance response and margins", *response, *checks, *figures["response"])
+    yield html.section(
+        "Sensitivity to destabilising stiffness (level I)",
+        *(_table(one) for one in tables.sensitivity_rows(study)), *figures["sensitivity"],
+    )  # fmt: skip
+    yield html.section("What was computed", html.listing(_statements(results, study)))
+    yield '<div class="appendix">'
+    least = [_table(one) for one in tables.least_stable_rows(results, every=True)]
+    yield html.section("Appendix A: least stable mode over speed", *least)
+    films = [_table(one) for one in tables.support_rows(results, every=True)]
+    yield html.section("Appendix B: bearings over speed", *films)
+    texts = [f"<pre>{escape(machine.text)}</pre>"]
+    texts += [
+        f"<h3>{escape(name)}</h3>\n<pre>{escape(one.text)}</pre>"
+        for name, one in machine.bearings.items()
+    ]
+    yield html.section("Appendix C: the machine's file and its bearings'", *texts)
+    yield "</div>"
+
+
+def _table(rows: tables.Rows) -> str:
+    if not rows.rows:
+        return ""
+    texts = 1 if rows.head[0] in ("check", "name") else 0
+    return f'<div class="wide">{table_html(rows.head, rows.rows, rows.title, texts=texts)}</div>'
+
+
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."
+
+
+def _origin(machine: object, when: datetime.datetime | None) -> str:
+    import hashlib
+
+    from ... import __version__
+
+    source, text = getattr(machine, "source", None), str(getattr(machine, "text", ""))
+    date = (when or datetime.datetime.now().astimezone()).strftime("%Y-%m-%d %H:%M %Z").strip()
+    name = "" if source is None else f"{source.name}, "
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    said = f"Machine report, {date}. File {name}SHA-256 {digest}. rotorsim {__version__}."
+    return html.paragraph(said, "origin")
+
+
+def _headline(results: dict[str, MachineResult]) -> str:
+    said = [_sentence(text) for text in tables.verdict_lines(results)]
+    for model, result in results.items():
+        lost = [one for one in result.thresholds if one.becomes_unstable]
+        if lost:
+            word = f"{model.capitalize()}: unstable" if len(results) > 1 else "Unstable"
+            said.append(
+                f"{word} from {lost[0].speed * RPM:.0f} rpm, whirling at "
+                f"{number(lost[0].whirl_frequency_ratio, 3)} of the speed."
+            )
+    verdicts = [str(result.verdict) for result in results.values()]
+    kind = '"verdict bad"' if "unstable" in verdicts else '"verdict good"'
+    kind = kind if set(verdicts) <= {"stable", "unstable"} else "verdict"
+    return html.paragraph(" ".join(said) or "No verdict: no speed at which all is known.", kind)
+
+
+def _rotor(last: MachineResult) -> str:
+    machine, rotor = last.description, last.machine.rotor
+    beam = machine.rotor.beam
+    speeds = machine.operating.speeds
+    rows = [
+        Row("length", f"{number(beam.length * 1e3)} mm"),
+        Row("mass", f"{number(rotor.total_mass)} kg"),
+        Row("elements", f"{len(rotor.nodes) - 1}, {'Timoshenko' if beam.shear else 'Rayleigh'}"),
+        Row("Young's modulus", f"{number(beam.material.youngs_modulus / 1e9)} GPa"),
+        Row("density", f"{number(beam.material.density)} kg/m³"),
+        Row("rotation from the left", "clockwise" if beam.clockwise else "counterclockwise"),
+        Row("internal damping", f"{number(beam.internal_damping * 1e6)} µs"),
+        Row("axial force", f"{number(beam.axial_force / 1e3)} kN"),
+        Row("speeds", f"{speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm, {len(speeds)}"),
+    ]
+    continuous = machine.operating.continuous
+    if continuous is not None:
+        rows.append(
+            Row("continuous speeds", f"{continuous[0] * RPM:.0f} to {continuous[1] * RPM:.0f} rpm")
+        )
+    return facts_html(rows)
+
+
+def _shaft_tables(last: MachineResult) -> str:
+    beam = last.description.rotor.beam
+    sections = [
+        (str(number_), number(beam.span(one)[0] * 1e3), number(one.length * 1e3),
+         _taper(one.outer_diameter, one.outer_right), _taper(one.inner_diameter, one.inner_right),
+         str(one.layer) + ("" if one.stiffness else ", mass alone"))
+        for number_, one in enumerate(beam.sections, start=1)
+    ]  # fmt: skip
+    head = ("section", "from mm", "length mm", "outer mm", "inner mm", "layer")
+    discs = [
+        (one.name or "-", number(one.at * 1e3), number(one.mass), number(one.polar_inertia),
+         number(one.transverse_inertia))
+        for one in beam.discs
+    ]  # fmt: skip
+    wide = [table_html(head, sections, "Sections", texts=0)]
+    if discs:
+        head = ("disc", "at mm", "mass kg", "polar kg m²", "transverse kg m²")
+        wide.append(table_html(head, discs, "Discs and added masses"))
+    return "\n".join(f'<div class="wide">{one}</div>' for one in wide)
+
+
+def _taper(left: float, right: float) -> str:
+    text = number(left * 1e3)
+    return text if left == right else f"{text} to {number(right * 1e3)}"
+
+
+def _bearings(results: dict[str, MachineResult]) -> str:
+    """Every bearing at the highest speed, with each thermal model."""
+    rows, top = [], 0.0
+    for model, result in results.items():
+        for state, entry in zip(result.supports, result.description.support, strict=True):
+            top = float(result.speeds[-1])
+            load = float(np.hypot(*state.load[-1]))
+            row = [state.name, number(entry.at * 1e3), model, number(load / 1e3)]
+            row.append(number(math.degrees(float(state.direction[-1])), 3))
+            if state.points:
+                point = state.points[-1]
+                k, c = point.stiffness / 1e6, point.damping / 1e3
+                row += [
+                    number(point.eccentricity_ratio, 3), number(point.min_film_thickness * 1e6, 3),
+                    number(point.max_pressure / 1e6, 3),
+                    number(point.max_temperature - 273.15, 3), number(point.power_loss / 1e3, 3),
+                    _four(k), _four(c), point.status.value,
+                ]  # fmt: skip
+            elif entry.stiffness is not None:
+                k, c = (
+                    np.array(one or np.zeros((2, 2))) for one in (entry.stiffness, entry.damping)
+                )
+                row += [*["-"] * 5, _four(k / 1e6), _four(c / 1e3), "constants"]
+            else:
+                row += [*["-"] * 7, "table"]
+            rows.append(row)
+    head = (
+        "name", "at mm", "model", "load kN", "direction °", "e/c", "h_min µm", "p_max MPa",
+        "T_max °C", "loss kW", "K xx/xy/yx/yy MN/m", "C xx/xy/yx/yy kN s/m", "status",
+    )  # fmt: skip
+    note = html.paragraph(
+        "Loads from statics; directions from x (down) in the direction of rotation; K and C in the "
+        "frame of each bearing's load."
+    )
+    return note + f'<div class="wide">{table_html(head, rows, f"At {top * RPM:.0f} rpm")}</div>'
+
+
+def _four(matrix: np.ndarray) -> str:
+    return " / ".join(number(float(one), 3) for one in matrix.ravel())
+
+
+def _statics(last: MachineResult) -> str:
+    if not last.statics:
+        return ""
+    one, rotor = last.statics[-1], last.machine.rotor
+    sag = np.array([one.displacement[x] for x, _ in rotor.planes])
+    place = int(np.abs(sag).argmax())
+    at = rotor.nodes[place].position
+    return html.paragraph(
+        f"Largest static displacement of the shaft along x at the highest speed: "
+        f"{number(float(sag[place]) * 1e6)} µm, {number(at * 1e3)} mm from the left end."
+    )
+
+
+def _comparison(results: dict[str, MachineResult]) -> str:
+    rows = []
+    for model, result in results.items():
+        found = result.modes
+        if found is None:
+            continue
+        k = int(found.least_stable[-1])
+        lost = [f"{one.speed * RPM:.0f}" for one in result.thresholds]
+        rows.append((
+            model, str(result.verdict), ", ".join(lost) or "none",
+            number(float(found.largest_growth_rate[-1])),
+            number(float(found.logarithmic_decrement[-1, k]), 3),
+            number(float(found.damped_frequency[-1, k]) / (2.0 * math.pi)),
+        ))  # fmt: skip
+    head = ("model", "verdict", "thresholds rpm", "growth 1/s", "log decrement", "Hz")
+    return table_html(head, rows, "Least stable mode at the highest speed") if rows else ""
+
+
+def _statements(results: dict[str, MachineResult], study: LateralStudy) -> Iterator[str]:
+    last = results[next(reversed(results))]
+    machine, rotor = last.description, last.machine.rotor
+    yield (
+        f"Rotor: {len(rotor.nodes) - 1} beam elements with rotary inertia and gyroscopic moments; "
+        f"{last.machine.size} unknowns, pads and housings included."
+    )
+    for name, one in machine.bearings.items():
+        mesh = one.film.mesh
+        yield (
+            f"{name}: film solved at its static load on {mesh.circumferential} × {mesh.axial} × "
+            f"{mesh.cross_film} cells, {', '.join(str(m) for m in one.thermal_models)}; "
+            f"{one.film.cavitation.value.replace('_', ' ')} cavitation."
+        )
+    yield (
+        "Coefficients are those of small motions about the static equilibrium; between the speeds "
+        "they are interpolated (monotone cubic)."
+    )
+    yield (
+        "Growth rate: real part of a mode's eigenvalue, positive when unstable; logarithmic "
+        "decrement −2π times growth rate over damped frequency. A real part below its own accuracy "
+        "counts as undamped, neither stable nor unstable."
+    )
+    yield f"Modes, critical speeds, response and checks: {last.thermal_model}."
+    for check in {one.formula: one for one in study.checks}.values():
+        yield f"{check.name}: {check.formula}."
+    if study.checks:
+        yield (
+            f"Edition as the file states it: {study.checks[0].edition}. The program does not "
+            "verify an edition: its limits are inputs."
+        )
+
+
+def _figures(results: dict[str, MachineResult], study: LateralStudy) -> dict[str, list[str]]:
+    """Figures by the section they belong to."""
+    from ..machine_job import machine_figures
+
+    placed: dict[str, list[str]] = {name: [] for name in dict.fromkeys(_PLACES.values())}
+    for name, drawn in machine_figures(results, study):
+        placed.setdefault(_PLACES.get(name, "modes"), []).append(
+            html.figure(drawn, _CAPTIONS.get(name, name.replace("_", " ")))
+        )
+    return placed

@@ -1,0 +1,203 @@
+"""A machine's results as rows of text, for terminal and report alike."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..rows import RPM, ZERO_CELSIUS, number
+from .lateral import LateralStudy
+from .machine import MachineResult, destabilised_by_heating
+
+_SHOWN_SPEEDS = 12
+"""Rows of the tables over speed, at most, where not all are wanted."""
+
+
+class Rows(NamedTuple):
+    """A table: its title, the head of each column, the rows."""
+
+    title: str
+    head: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+
+def _suffix(results: dict[str, MachineResult], model: str) -> str:
+    return "" if len(results) == 1 else f", {model}"
+
+
+def least_stable_rows(results: dict[str, MachineResult], every: bool = False) -> Iterator[Rows]:
+    """Least stable mode over speed, a table for each thermal model."""
+    head = ("rpm", "Hz", "f/rev", "log decrement", "growth 1/s", "whirl", "verdict")
+    for model, result in results.items():
+        found = result.modes
+        if found is None:
+            continue
+        least, whirl, verdicts = found.least_stable, found.whirl, found.verdicts
+        rows = []
+        for i in _some(len(result.known), every):
+            k, speed = int(least[i]), float(result.known[i])
+            frequency = float(found.damped_frequency[i, k])
+            rows.append((
+                f"{speed * RPM:.0f}", number(frequency / (2.0 * math.pi)),
+                number(frequency / speed, 3), number(float(found.logarithmic_decrement[i, k]), 3),
+                number(float(found.growth_rate[i, k])), str(whirl[i, k]), str(verdicts[i]),
+            ))  # fmt: skip
+        yield Rows(f"Least stable mode{_suffix(results, model)}", head, rows)
+
+
+def critical_rows(results: dict[str, MachineResult]) -> Iterator[Rows]:
+    """Critical and threshold speeds, a table for each thermal model that has some."""
+    for model, result in results.items():
+        rows = [
+            (f"{one.speed * RPM:.0f}", "critical speed", one.whirl,
+             f"damping ratio {number(one.damping_ratio, 3)}")
+            for one in result.critical_speeds
+        ]  # fmt: skip
+        rows += [
+            (f"{one.speed * RPM:.0f}",
+             f"threshold, {'unstable' if one.becomes_unstable else 'stable'} above", "",
+             f"whirl ratio {number(one.whirl_frequency_ratio, 3)}")
+            for one in result.thresholds
+        ]  # fmt: skip
+        if rows:
+            title = f"Critical and threshold speeds{_suffix(results, model)}"
+            yield Rows(title, ("rpm", "kind", "whirl", ""), rows)
+
+
+def mode_rows(result: MachineResult, count: int = 10) -> Rows:
+    """Lowest oscillating modes at the highest speed."""
+    head = ("mode", "Hz", "f/rev", "log decrement", "damping ratio", "growth 1/s", "whirl")
+    rows = []
+    if result.modes is not None:
+        found, top = result.modes.oscillating(), float(result.known[-1])
+        whirl, undamped = found.whirl, found.undamped
+        for place, k in enumerate(np.argsort(found.undamped_frequency[-1])[:count], start=1):
+            frequency = float(found.damped_frequency[-1, k])
+            growth = "undamped" if undamped[-1, k] else number(float(found.growth_rate[-1, k]))
+            rows.append((
+                str(place), number(frequency / (2.0 * math.pi)), number(frequency / top, 3),
+                number(float(found.logarithmic_decrement[-1, k]), 3),
+                number(float(found.damping_ratio[-1, k]), 3), growth, str(whirl[-1, k]),
+            ))  # fmt: skip
+    at = f" at {result.known[-1] * RPM:.0f} rpm" if result.known.size else ""
+    return Rows(f"Modes{at}, {result.thermal_model}", head, rows)
+
+
+def support_rows(results: dict[str, MachineResult], every: bool = False) -> Iterator[Rows]:
+    """Load and film of each bearing over speed."""
+    head = ("rpm", "load kN", "direction deg", "e/c", "h min µm", "T max degC", "status")
+    for model, result in results.items():
+        for state in result.supports:
+            if not state.points:
+                continue
+            rows = []
+            for i in _some(len(state.points), every):
+                point = state.points[i]
+                rows.append((
+                    f"{point.speed * RPM:.0f}",
+                    number(float(np.hypot(*state.load[i])) / 1e3),
+                    number(math.degrees(float(state.direction[i])), 3),
+                    number(point.eccentricity_ratio), number(point.min_film_thickness * 1e6),
+                    number(point.max_temperature - ZERO_CELSIUS), point.status.value,
+                ))  # fmt: skip
+            yield Rows(f"{state.name}{_suffix(results, model)}", head, rows)
+
+
+def peak_rows(study: LateralStudy) -> Iterator[Rows]:
+    """Peaks of the unbalance response, a table for each probe that has some."""
+    for response in study.responses:
+        rows = []
+        for peak in response.peaks:
+            factor = peak.amplification_factor
+            rows.append((
+                f"{peak.speed * RPM:.0f}", number(peak.amplitude * 1e6),
+                number(factor, 3) if factor is not None else "-", peak.note,
+            ))  # fmt: skip
+        if rows:
+            title = f"Unbalance response peaks at {response.name}"
+            yield Rows(title, ("rpm", "amplitude µm", "AF", ""), rows)
+
+
+def check_rows(study: LateralStudy) -> Iterator[Rows]:
+    """Lateral checks with their limits; none without."""
+    if not study.checks:
+        return
+    rows = []
+    for check in study.checks:
+        value, limit = (_shown(part, check.unit) for part in (check.value, check.limit))
+        word = {True: "passed", False: "FAILED", None: "not judged"}[check.passed]
+        rows.append((f"{check.name}: {check.place}", value, check.comparison, limit, word))
+    title = f"Lateral checks ({study.checks[0].edition})"
+    yield Rows(title, ("check", "value", "", "limit", "result"), rows)
+
+
+def _shown(value: float | None, unit: str) -> str:
+    return f"{number(None if value is None else value * 1e6)} µm" if unit == "m" else number(value)
+
+
+def sensitivity_rows(study: LateralStudy) -> Iterator[Rows]:
+    """Decrement against destabilising stiffness (level I)."""
+    if not study.decrement_curves:
+        return
+    rows = [
+        (f"{curve.speed * RPM:.0f}", number(curve.anticipated / 1e6),
+         number(float(curve.decrement[0]), 3), number(curve.anticipated_decrement, 3),
+         "above 10 000 Q_A" if curve.threshold is None else number(curve.threshold / 1e6),
+         "-" if curve.threshold is None else number(curve.threshold / curve.anticipated, 3))
+        for curve in study.decrement_curves
+    ]  # fmt: skip
+    head = ("rpm", "Q_A MN/m", "decrement without", "decrement at Q_A", "Q0 MN/m", "Q0/Q_A")
+    yield Rows("Sensitivity to destabilising stiffness", head, rows)
+
+
+def heating_lines(results: dict[str, MachineResult]) -> list[str]:
+    """Modes that only heating makes unstable, a sentence each."""
+    if len(results) < 2:
+        return []
+    cold, hot = next(iter(results.values())), results[next(reversed(results))]
+    return [
+        f"only heating makes the mode of {number(mode.frequency / (2.0 * math.pi))} Hz unstable: "
+        f"growth rate {number(mode.isothermal_growth_rate)} 1/s without, "
+        f"{number(mode.growth_rate)} 1/s with it"
+        for mode in destabilised_by_heating(cold, hot)
+    ]
+
+
+def failure_lines(results: dict[str, MachineResult]) -> list[str]:
+    """What did not converge, a sentence each."""
+    lines = []
+    for model, result in results.items():
+        lines += [
+            f"{state.name}, {model}, {point.speed * RPM:.0f} rpm: {point.status.value}: "
+            f"{point.message}"
+            for state in result.supports
+            for point in state.points
+            if not point.converged
+        ]
+        lines += [
+            f"static equilibrium at {speed * RPM:.0f} rpm stopped with a residual of "
+            f"{one.residual:.1e} of the load"
+            for speed, one in zip(result.speeds, result.statics, strict=False)
+            if not one.converged
+        ]
+    return lines
+
+
+def verdict_lines(results: dict[str, MachineResult]) -> list[str]:
+    """Verdict at the highest speed, one for each thermal model."""
+    return [
+        f"{'' if len(results) == 1 else f'{model}: '}{result.verdict} at "
+        f"{float(result.known[-1]) * RPM:.0f} rpm"
+        for model, result in results.items()
+        if result.verdict is not None
+    ]
+
+
+def _some(count: int, every: bool) -> Sequence[int]:
+    """Indices of at most so many rows, evenly spread, the first and last among them."""
+    if every or count <= _SHOWN_SPEEDS:
+        return range(count)
+    return [round(i) for i in np.linspace(0, count - 1, _SHOWN_SPEEDS)]
