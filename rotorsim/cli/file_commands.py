@@ -52,6 +52,14 @@ def _shipped_names(incomplete: str) -> list[str]:
     return [name for name in shipped_scenarios() if name.startswith(incomplete)]
 
 
+class _NewRotor(StrEnum):
+    """Rotors that `new` can write."""
+
+    RIGID = "rigid"
+    JEFFCOTT = "jeffcott"
+    BEAM = "beam"
+
+
 def _export_formats(text: str) -> list[_ExportFormat]:
     """Formats from words between commas, each once."""
     words = [word.strip().lower() for word in text.split(",")]
@@ -88,6 +96,10 @@ def new(
         _Profile | None,
         typer.Option("--profile", "-p", help="Shape of the bore.", show_default="plain"),
     ] = None,
+    rotor: Annotated[
+        _NewRotor,
+        typer.Option("--rotor", help="beam: a machine's file, its bearing's beside it."),
+    ] = _NewRotor.RIGID,
     load: Annotated[
         str | None, typer.Option("--load", help='Static load, e.g. "10 kN".', show_default="10 kN")
     ] = None,
@@ -114,9 +126,11 @@ def new(
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> int:
-    """Write a commented scenario to start from, or a machine from another program's drawing.
+    """Write a commented scenario, or a machine, to start from.
 
     Example: rotorsim new pump --profile elliptical --load "10 kN" --iso-vg 46
+
+    A rotor from its drawing on two bearings: rotorsim new compressor --rotor beam
     """
     from ..atomic import write_text
     from ..files.scenario import Scenario
@@ -138,8 +152,17 @@ def new(
         if (profile, load, eccentricity, iso_vg, example) != (None,) * 5:
             raise InputError("describes the whole machine: give no further choice", key="--from")
         return _from_drawing(output, path, source)
+    if rotor is _NewRotor.BEAM:
+        if example is not None or load is not None or eccentricity is not None:
+            key = "--example" if example else "--load" if load else "--eccentricity"
+            raise InputError("goes without: a machine's loads follow from its rotor", key=key)
+        return _new_machine(output, path, profile or _Profile.ELLIPTICAL, iso_vg, force)
+    if rotor is _NewRotor.JEFFCOTT and example is not None:
+        raise InputError("has its own rotor", key="--example")
     if example is None:
         text = _new_text(path.stem, profile or _Profile.PLAIN, load, eccentricity, iso_vg)
+        if rotor is _NewRotor.JEFFCOTT:
+            text = text.replace(_RIGID_ROTOR, _JEFFCOTT_ROTOR)
     elif (profile, load, eccentricity, iso_vg) == (None, None, None, None):
         text = _shipped_text(example)
     else:
@@ -195,6 +218,31 @@ def _new_text(
         else ("eccentricity", eccentricity)
     )
     return _scenario_text(title, profile.value, target, 32.0 if iso_vg is None else iso_vg)
+
+
+def _new_machine(
+    output: Output, path: Path, profile: _Profile, iso_vg: float | None, force: bool
+) -> int:
+    """Write a machine's file and its bearing's."""
+    from ..atomic import write_text
+    from ..files.machine import load_machine
+
+    bearing = path.with_name(f"{path.stem}_bearing.toml")
+    if bearing.exists() and not force:
+        raise InputError("exists; choose another name, or replace it with --force", source=bearing)
+    check_file(bearing)
+    safe = "".join(letter for letter in path.stem if letter.isprintable() and letter not in '"\\')
+    write_text(bearing, _new_text(f"Bearing of {safe}", profile, None, None, iso_vg))
+    text = _MACHINE.replace("{title}", safe)
+    write_text(path, text.replace("{bearing}", bearing.name.replace("\\", "").replace('"', "")))
+    loaded = load_machine(path)
+    output.document({"machine": path, "bearing": bearing, "title": loaded.title})
+    output.show(
+        f"{path} and {bearing} are written. Put your numbers in, then:\n"
+        f"  rotorsim check {as_typed(path)}\n"
+        f"  rotorsim run {as_typed(path)}"
+    )
+    return DONE
 
 
 def _shipped_text(name: str) -> str:
@@ -375,6 +423,13 @@ load = "{load}"                      # or: eccentricity_ratio = 0.5
 _ECCENTRICITY = """\
 eccentricity_ratio = {eccentricity:g}            # or: load = "10 kN"
 """
+_RIGID_ROTOR = 'mass = "1000 kg"                    # per bearing\n'
+_JEFFCOTT_ROTOR = """\
+kind = "jeffcott"                   # a disc on a massless shaft between two like bearings
+disc_mass = "900 kg"                # half of the disc's
+journal_mass = "50 kg"
+shaft_stiffness = "400 MN/m"        # half of the shaft's
+"""
 _ROTOR = """
 [rotor]
 mass = "1000 kg"                    # per bearing
@@ -407,3 +462,105 @@ def _scenario_text(title: str, profile: str, target: tuple[str, str | float], is
         bush=_PADS if pads else _BUSH,
     )  # fmt: skip
     return head + _BORES[profile] + oil + held + _ROTOR
+
+
+_MACHINE = """\
+# A machine: a rotor from its drawing on its bearings. `rotorsim check` says what this file means,
+# `rotorsim run` does the whole job: bearings, modes, response, checks, figures, recording.
+title = "{title}"
+
+[rotor]
+kind = "beam"                       # steel; youngs_modulus, density and poisson_ratio change it
+rotation = "clockwise"              # seen from the left end
+# internal_damping = "1e-5 s"       # rotating: above a critical speed it drives forward whirl
+
+# Sections from the left end on; inner_diameter makes them hollow, outer_diameter_right a taper. A
+# sleeve over them has at and layer = 2.
+[[rotor.section]]
+length = "200 mm"
+outer_diameter = "100 mm"           # twice the bearing's journal_radius
+
+[[rotor.section]]
+length = "300 mm"
+outer_diameter = "140 mm"
+
+[[rotor.section]]
+length = "500 mm"
+outer_diameter = "180 mm"
+
+[[rotor.section]]
+length = "300 mm"
+outer_diameter = "140 mm"
+
+[[rotor.section]]
+length = "200 mm"
+outer_diameter = "100 mm"
+
+[[rotor.disc]]                      # or its dimensions; mass alone: an added mass
+name = "wheel"
+at = "750 mm"                       # from the left end, like every place
+mass = "400 kg"
+polar_inertia = "20 kg*m^2"
+transverse_inertia = "11 kg*m^2"
+
+[[rotor.unbalance]]
+at = "750 mm"
+grade = "G2.5"                      # ISO 21940-11; or amount = "500 g*mm"
+
+# Angles of a bearing count from x, down, in the direction of rotation; its own load and speeds are
+# not used here. In place of bearing: coefficients = "theirs.csv", or stiffness and damping.
+[[support]]
+name = "left"
+at = "100 mm"
+bearing = "{bearing}"
+# pedestal = { mass = "300 kg", stiffness = "500 MN/m", damping = "50 kN*s/m" }
+
+[[support]]
+name = "right"
+at = "1400 mm"
+bearing = "{bearing}"
+
+# [[seal]]                          # a seal or impeller: acts on the motion, carries no load
+# at = "600 mm"
+# stiffness = [["1 MN/m", "0.5 MN/m"], ["-0.5 MN/m", "1 MN/m"]]
+# damping = "1 kN*s/m"
+
+[[probe]]
+name = "left X"
+at = "220 mm"
+angle = "135 deg"
+
+[[probe]]
+name = "left Y"
+at = "220 mm"
+angle = "225 deg"
+
+# [[clearance]]                     # checked against the response
+# at = "600 mm"
+# diametral = "0.5 mm"
+
+[operating]
+speed = { start = "2000 rpm", stop = "8000 rpm", count = 7 }
+continuous = ["4000 rpm", "6000 rpm"]   # the range that margins are judged for
+trip = "6600 rpm"
+
+[lateral]
+edition = "formulas of API 617, not compared with an edition"
+destabilising_stiffness = [{ at = "750 mm", anticipated = "2 MN/m" }]
+
+# A map of the least stable mode's growth rate, by rotorsim run; any two parameters of the machine.
+# [[map]]
+# x = "speed"
+# y = "left.clearance"
+# y_values = { start = "80 um", stop = "140 um", count = 5 }
+
+# What tolerances do to the threshold: rotorsim stability --tolerances
+# [tolerances]
+# spread = { "left.clearance" = "10 um", "right.clearance" = "10 um", viscosity = "10 %" }
+
+# A magnetic actuator and its sensor: rotorsim control
+# [control]
+# actuator = ["400 mm"]
+# sensor = ["wheel"]
+# max_force = "2 kN"
+"""
