@@ -428,7 +428,7 @@ def _show_machine_map(
 ) -> int:
     from ..files.machine import load_machine
     from ..study.machine_map import map_of_machine
-    from .progress import film_progress
+    from .output import film_progress
 
     machine = load_machine(source)
     for key, (name, _) in texts.items():
@@ -525,7 +525,7 @@ def _show_tolerances(
 
 
 def _shown_study(work: _Work, study: ToleranceStudy, title: str) -> int:
-    from ..show.stability_figures import tolerance_figures
+    from ..show.job import tolerance_figures
     from .stability_results import study_document, study_tables
 
     figures = tolerance_figures(study, title)

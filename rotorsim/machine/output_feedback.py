@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..threads import on_one_blas_thread
-from .reduction import response, test_frequencies
+from .reduction import probing_frequencies, response
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -126,7 +126,8 @@ def pd_of_sensors(
             key="control.sensor",
         )
     gain = np.linalg.svd(
-        response(system.A, system.B, system.C)(test_frequencies(system.poles())), compute_uv=False
+        response(system.A, system.B, system.C)(probing_frequencies(system.poles())),
+        compute_uv=False,
     ).max()
     unit = 1.0 / float(gain)
 
@@ -162,7 +163,7 @@ def pd_of_sensors(
 
 def _slow(system: control.StateSpace) -> float:
     """Frequency of the least stable mode, or of the slowest [rad/s]."""
-    poles = np.asarray(system.poles(), dtype=complex)
+    poles: Any = np.asarray(system.poles(), dtype=complex)
     frequency = abs(complex(poles[poles.real.argmax()]).imag)
     return frequency or float(np.abs(poles)[np.abs(poles) > 0.0].min())
 
@@ -174,7 +175,7 @@ def modulus_margin(system: control.StateSpace, feedback: OutputFeedback) -> floa
     Of simultaneous changes of all loops; it says nothing where the closed loop is unstable.
     """
     matrix, _ = feedback.closed_loop(system)
-    frequencies = test_frequencies(
+    frequencies = probing_frequencies(
         np.concatenate([np.linalg.eigvals(matrix), np.asarray(system.poles())])
     )
     plant = response(system.A, system.B, system.C)(frequencies)
@@ -259,5 +260,5 @@ def run_in_time(
         state = forward @ state
         if m and not np.array_equal(acting, wanted):
             state = state + held @ (acting - wanted)
-    t = step * np.arange(len(size))
+    t = step * np.arange(len(size), dtype=float)
     return LinearMotion(t, np.array(displacement), np.array(force), np.array(size))

@@ -81,7 +81,8 @@ def reduced(system: control.StateSpace, error: float = 1e-3, order: int | None =
     def decays(real: complex, _imaginary: float = 0.0) -> bool:
         return complex(real).real < slow
 
-    t, z, stable = schur(a, output="real", sort=decays)
+    parts: Any = schur(a, output="real", sort=decays)
+    t, z, stable = parts
     if not stable:
         raise InputError("no mode decays: there is nothing to reduce", key="system")
     # Decoupled: with X from T11 X - X T22 = -T12 the stable part does not see the other.
@@ -97,7 +98,7 @@ def reduced(system: control.StateSpace, error: float = 1e-3, order: int | None =
     usable = max(int((hankel > floor).sum()), 1)
     if hankel[0] == 0.0:
         raise InputError("no stable mode is seen from these inputs and outputs", key="system")
-    frequencies = test_frequencies(values)
+    frequencies = probing_frequencies(values)
     stable_part = response(own, own_in, own_out)(frequencies)
     largest = _largest(stable_part)
     tail = 2.0 * np.append(np.cumsum(hankel[::-1])[::-1], 0.0)
@@ -144,9 +145,9 @@ def _largest(responses: ComplexArray) -> float:
     return float(np.linalg.svd(responses, compute_uv=False).max(initial=0.0))
 
 
-def test_frequencies(values: ArrayLike) -> Array:
+def probing_frequencies(values: ArrayLike) -> Array:
     """Frequencies at and about eigenvalues, between and beyond them, ascending [rad/s]."""
-    poles = np.asarray(values, dtype=complex)
+    poles: Any = np.asarray(values, dtype=complex)
     poles = poles[poles.imag >= 0.0]
     about = poles.imag[:, None] + np.abs(poles.real)[:, None] * _ABOUT
     sizes = np.abs(poles)[np.abs(poles) > 0.0]
@@ -168,7 +169,7 @@ def response(
     modal = bool(a.size) and float(np.linalg.cond(vectors)) < 1e8
     shown, driven = (c @ vectors, np.linalg.solve(vectors, b)) if modal else (c, b)
 
-    def at(frequency: ArrayLike) -> ComplexArray:
+    def at(frequency: ArrayLike) -> Any:
         s: Any = 1j * np.atleast_1d(np.asarray(frequency, dtype=float))
         if not a.size:
             return np.broadcast_to(feed.astype(complex), (s.size, *feed.shape))

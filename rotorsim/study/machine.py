@@ -507,7 +507,8 @@ def points_with_fields(
         return []
 
     analysis = MachineAnalysis(
-        Variant(result.description), result.machine.rotor, result.thermal_model, result.speeds,
+        Variant(result.description), result.machine.rotor, result.thermal_model,
+        result.speeds.tolist(),
         no_sweep,
     )  # fmt: skip
     found: dict[str, list[OperatingPoint]] = {}

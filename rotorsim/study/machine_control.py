@@ -203,7 +203,8 @@ def _displacements(machine: Machine) -> list[int]:
 
 
 def _highest(system: Any) -> float:
-    return float(np.abs(np.asarray(system.poles()).imag).max(initial=0.0))
+    poles: Any = np.asarray(system.poles())
+    return float(np.abs(poles.imag).max(initial=0.0))
 
 
 def _start(machine: Machine, speed: float, disturbance: float) -> Array:
@@ -219,5 +220,5 @@ def _start(machine: Machine, speed: float, disturbance: float) -> Array:
 
 
 def _sorted(values: Any) -> ComplexArray:
-    found = np.asarray(values, dtype=complex)
+    found: Any = np.asarray(values, dtype=complex)
     return found[np.argsort(-found.real, kind="stable")]

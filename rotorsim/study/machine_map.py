@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -402,7 +402,7 @@ class _Films:
             if not state.points:
                 grid.append(None)
                 continue
-            states = [self.results[k].supports[place] for k in index.ravel()]
+            states = [self.results[int(k)].supports[place] for k in index.ravel()]
             unknowns, coupled, values = _matrices(self.speeds, states, wanted)
             values = values.reshape(*index.shape, *values.shape[1:])
             # The speeds take the place of the axis that is theirs, which has one node.
@@ -468,7 +468,7 @@ class _Rows:
     def __call__(self, i: int) -> list[tuple[float, float]]:
         return [self._cell(i, j) for j in range(self.along[1].size)]
 
-    def __getstate__(self) -> dict[str, object]:
+    def __getstate__(self) -> dict[str, Any]:
         return vars(self) | {"job": replace(self.job, progress=None)}
 
     @on_one_blas_thread

@@ -89,7 +89,7 @@ class _Show:
     @property
     def times(self) -> Array:
         """Of all frames [s]."""
-        return np.arange(self.places.size * _FRAMES) * (_SECONDS / _FRAMES)
+        return np.arange(self.places.size * _FRAMES, dtype=float) * (_SECONDS / _FRAMES)
 
     def _chosen(self, modes: Modes) -> list[int]:
         """Branches: the lowest that swing, and the least stable one."""
@@ -111,8 +111,8 @@ class _Show:
         places = np.searchsorted(last.speeds, self.speeds[chosen])
         for support, points in points_with_fields(last, places.tolist()).items():
             name = re.sub(r"\W+", "_", f"{support}_{last.thermal_model}")
-            radius = self.machine.bearings[support].bearing.journal_radius
-            own = [replace(film_at_rest(one, radius), thermal_model=name) for one in points]
+            bearing = self.machine.bearings[support].bearing
+            own = [replace(film_at_rest(one, bearing), thermal_model=name) for one in points]
             frames += own
             runs.append(Run(name, self._clock(own)))
         return frames, runs
@@ -230,7 +230,7 @@ class _Show:
                 strips=np.array([lines[i] for i in which], dtype=np.float32)
             )
             stream.send_columns(f"{root}/line", [index], strips)
-        place = [[0.5 * self.length, 0.24 * self.length, 0.0]]
+        place = [[0.5 * self.length, 0.31 * self.length, 0.0]]
         stream.log(
             f"{root}/words",
             rr.Points3D(place, radii=0.0, colors=TEXT, show_labels=True), static=True,
@@ -305,7 +305,7 @@ class _Show:
         return rrb.Spatial3DView(
             origin=origin, name=name, line_grid=False, background=_BACKGROUND,
             eye_controls=rrb.EyeControls3D(
-                position=[0.5 * size, 0.35 * size, 1.05 * size],
+                position=[0.5 * size, 0.3 * size, 0.85 * size],
                 look_target=[0.5 * size, 0.02 * size, 0.0], eye_up=[0.0, 1.0, 0.0],
             ),
         )  # fmt: skip
