@@ -27,11 +27,11 @@ from rotorsim.orbit import (
     simulate,
     steady_part,
 )
+from rotorsim.orbit.analysis import growth_rate
 from rotorsim.orbit.film_force import SolvedFilmForce, loaded_film, operating_film
 from rotorsim.orbit.force_map import FilmMapForce, ForceMap
 from rotorsim.orbit.forces import BearingForce, find_equilibrium, linearize_force
 from rotorsim.orbit.kernels import short_bearing_impedance
-from rotorsim.orbit.modes import growth_rate
 from rotorsim.rotor import Rotor
 
 SPEED, LOAD, MASS = 12000.0 * math.pi / 30.0, 1500.0, 135.0

@@ -197,7 +197,7 @@ def recognise(head: bytes, suffix: str = "") -> FileKind | None:
 
 
 def _is_csv_of_coefficients(text: bytes) -> bool:
-    """Whether the first line that is no comment names the columns of a coefficient table."""
+    """Return whether the first line that is no comment names the columns of a coefficient table."""
     for line in text.splitlines():
         if line.strip() and not line.lstrip().startswith(b"#"):
             lower = line.lower()

@@ -12,6 +12,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from rotorsim.show.figures.style import SETTINGS
+
 from .study import (
     AMBIENT,
     CLEARANCES,
@@ -43,18 +45,7 @@ ANGLE = "angle from maximum film thickness [deg]"
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#7F5F00")
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), ":")
 MARKERS = ("o", "s", "^", "D", "v")
-STYLE: Any = {
-    "font.size": 9.0,
-    "axes.titlesize": 9.5,
-    "axes.grid": True,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.6,
-    "axes.axisbelow": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "lines.linewidth": 1.5,
-    "lines.markersize": 4.0,
-}
+STYLE: Any = {k: v for k, v in SETTINGS.items() if not k.startswith(("legend.", "svg."))}
 
 
 def draw(r: Results) -> dict[str, bytes]:

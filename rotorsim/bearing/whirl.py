@@ -75,7 +75,7 @@ class _RouthCoefficients:
         return (self.trace_damping > 0.0) & (self.cross > 0.0) & (self.det_stiffness > 0.0)
 
     def stable(self, mass: ArrayLike) -> NDArray[np.bool_]:
-        """Whether every eigenvalue has a negative real part at `mass` [kg] (broadcast)."""
+        """Return whether every eigenvalue has a negative real part at `mass` [kg] (broadcast)."""
         slack = self.det_damping * self.equivalent_stiffness - np.asarray(mass) * self.det_shifted
         return self.may_be_stable & (slack > 0.0)
 

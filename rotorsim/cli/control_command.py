@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -114,18 +116,18 @@ def control(
             raise InputError("goes with a machine: here it acts on the journal", key=key)
     design = design or _DesignChoice.LQR
     from ..files.scenario import load_scenario
-    from ..study.control import ControlWishes, Design, study_control
+    from ..model.orbit import ActuatorSettings, Design
+    from ..study.control import study_control
 
     loaded = load_scenario(scenario)
-    force = positive(max_force, "force", "--max-force", "2 kN")
-    wishes = ControlWishes(
-        design=Design(design.value),
-        disturbance=positive(disturbance, "length", "--disturbance", "2 um"),
-        revolutions=revolutions,
-        **({} if force is None else {"max_force": force}),
-    )
+    limit = positive(max_force, "force", "--max-force", "2 kN")
+    settings = ActuatorSettings(Design(design.value), math.inf if limit is None else limit)
+    start = positive(disturbance, "length", "--disturbance", "2 um")
     at = positive(speed, "speed", "--speed", "15000 rpm") or float(loaded.speeds[-1])
-    study = study_control(_case(loaded, clearance, model), at, _mass(loaded, mass), wishes)
+    study = study_control(
+        _case(loaded, clearance, model), at, _mass(loaded, mass), settings,
+        disturbance=start, revolutions=revolutions,
+    )  # fmt: skip
     document = _study_document(study)
     if folder is not None:
         from ..show.job import control_figures, save_figures
@@ -291,7 +293,6 @@ def _case(scenario: Scenario, clearance: str | None, model: str | None) -> Case:
 
 def _study_document(study: ControlStudy) -> dict[str, Any]:
     """A control study for JSON."""
-    import dataclasses
 
     def motion(orbit: Any, values: Any) -> dict[str, Any]:
         return {
@@ -372,6 +373,4 @@ def _force_words(study: ControlStudy) -> str:
 
 
 def _factor(value: float) -> str:
-    import math
-
     return f"{value:.3g}" if math.isfinite(value) else "unlimited"

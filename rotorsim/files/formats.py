@@ -111,7 +111,7 @@ def write_table(
 
 
 def is_table(path: str | Path) -> bool:
-    """Whether a file is meant as a table: by its suffix, and a TOML file by its contents."""
+    """Return whether a file is meant as a table: by its suffix, and a TOML file by its contents."""
     source = Path(path)
     suffix = source.suffix.lower()
     return suffix in _SUFFIXES or (suffix == ".toml" and ross.is_saved_by_ross(source))

@@ -215,7 +215,7 @@ def groove_edges(groove: Groove) -> tuple[float, float]:
 
 
 def in_full_groove(bearing: Bearing, theta: Array) -> NDArray[np.bool_]:
-    """Which angles lie inside a full-length groove."""
+    """Return which angles lie inside a full-length groove."""
     inside = np.zeros(theta.shape, dtype=bool)
     for groove in bearing.grooves:
         if bearing.spans_length(groove):
@@ -255,7 +255,7 @@ def _groove_at(bearing: Bearing, theta: float) -> int | None:
 def _supply_cells(
     bearing: Bearing, theta_faces: Array, y_faces: Array
 ) -> tuple[NDArray[np.int64], Array]:
-    """Which cells are groove; axial faces are moved onto the ends of partial grooves."""
+    """Return which cells are groove; axial faces are moved onto the ends of partial grooves."""
     y_faces = y_faces.copy()
     for groove in bearing.grooves:
         if groove.length is None or bearing.spans_length(groove):

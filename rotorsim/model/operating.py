@@ -44,7 +44,7 @@ Target = EccentricityTarget | LoadTarget
 
 
 def is_unloaded(target: Target) -> bool:
-    """Whether there is no static load, or no eccentricity to carry one."""
+    """Return whether there is no static load, or no eccentricity to carry one."""
     given = target.load if isinstance(target, LoadTarget) else target.eccentricity_ratio
     return given == 0.0
 

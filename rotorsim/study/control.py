@@ -28,29 +28,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class ControlWishes:
-    """What the design is to reach.
-
-    max_force : Saturation of each axis [N].
-    displacement_scale : LQR: a displacement as bad as the full force [m]; None: a hundredth of the
-        clearance.
-    growth_rate : PD: largest real part to reach, zero or negative [1/s]; None: minus a fiftieth of
-        the shaft speed.
-    disturbance : Displacement from rest with which the run in time begins [m]; None: a fiftieth of
-        the clearance.
-    revolutions : Length of that run; 0: none; None: 100 with a film whose force has a compiled
-        form, 20 with one that is solved at every step.
-    """
-
-    design: Design = Design.LQR
-    max_force: float = math.inf
-    displacement_scale: float | None = None
-    growth_rate: float | None = None
-    disturbance: float | None = None
-    revolutions: int | None = None
-
-
 @dataclass(frozen=True, eq=False)
 class ControlStudy:
     """An actuator's feedback and what it does (SI).
@@ -100,21 +77,29 @@ class ControlStudy:
 
 
 def study_control(
-    case: Case, speed: float, mass: float, wishes: ControlWishes | None = None
+    case: Case,
+    speed: float,
+    mass: float,
+    settings: ActuatorSettings | None = None,
+    *,
+    disturbance: float | None = None,
+    revolutions: int | None = None,
 ) -> ControlStudy:
     """Design the feedback at one speed and try it in time on the nonlinear film.
 
     case : One bearing with one thermal model.
     speed : [rad/s]
     mass : Rotor mass per bearing [kg].
+    disturbance : Displacement from rest with which the run in time begins [m]; None: a fiftieth of
+        the clearance.
+    revolutions : Length of that run; 0: none; None: 100 with a film whose force has a compiled
+        form, 20 with one that is solved at every step.
     Raises InputError: The design reaches its aim with no gain, or nothing carries the load.
     """
-    from ..machine.control import loop_margins
-    from ..machine.statespace import state_space
+    from ..machine.control import loop_margins, state_space
     from ..orbit.film_force import loaded_film
     from ..orbit.forces import CompilableForce, find_equilibrium, linearize_force
 
-    wishes = wishes or ControlWishes()
     if case.bearing.pads:
         raise InputError(
             'is for a bore; on tilting pads use [orbit.actuator] with force = "linear"',
@@ -125,17 +110,10 @@ def study_control(
     linear = Coefficients(*linearize_force(film.force, *rest, speed), speed)
     system = state_space(linear, mass)
     clearance = case.bearing.radial_clearance
-    settings = ActuatorSettings(
-        design=wishes.design,
-        force_limit=wishes.max_force,
-        displacement_scale=wishes.displacement_scale,
-        decay_ratio=None if wishes.growth_rate is None else -wishes.growth_rate / speed,
-    )
-    feedback = _design_feedback(settings, linear, mass, clearance, film.load)
-    disturbance = wishes.disturbance or 0.02 * clearance
+    feedback = _design_feedback(settings or ActuatorSettings(), linear, mass, clearance, film.load)
+    disturbance = disturbance or 0.02 * clearance
     orbits: list[Orbit | None] = [None, None]
     largest = None
-    revolutions = wishes.revolutions
     if revolutions is None:
         revolutions = 100 if isinstance(film.force, CompilableForce) else 20
     if revolutions:
@@ -206,8 +184,7 @@ def _design_feedback(
     Raises InputError: The design reaches its aim with no gain, or nothing says which force is
         large.
     """
-    from ..machine.control import design_lqr, design_pd, proportional_derivative
-    from ..machine.statespace import state_space
+    from ..machine.control import design_lqr, design_pd, proportional_derivative, state_space
 
     limit = settings.force_limit
     if settings.design is Design.LQR:

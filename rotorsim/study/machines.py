@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 
 from ..errors import InputError
 from ..files.machine import MachineFile
+from ..machine import control as rotor_control
 from ..machine import modes as of_machine
 from ..machine import response as to_unbalance
-from ..machine import statespace
 from ..machine.branches import Modes
 from ..machine.machine import Machine
 from ..machine.response import UnbalanceResponse
@@ -108,9 +108,9 @@ def state_space(
     ----------
     plant : MachineFile, Machine or Coefficients
     mass, speed, name
-        See `rotorsim.machine.statespace.state_space`.
+        See `rotorsim.machine.control.state_space`.
     thermal_model : str, optional
         Of a machine file's bearings; see `assembled`.
     """
     whole = assembled(plant, thermal_model) if isinstance(plant, MachineFile) else plant
-    return statespace.state_space(whole, mass, speed, name)
+    return rotor_control.state_space(whole, mass, speed, name)

@@ -7,10 +7,10 @@ import pytest
 
 from rotorsim.errors import InputError, OutOfRangeError
 from rotorsim.machine.branches import Verdict
+from rotorsim.machine.control import state_space
 from rotorsim.machine.machine import Machine, Mount
 from rotorsim.machine.modes import modes
 from rotorsim.machine.spectrum import MachineSpectrum, all_eigenmodes, lowest_eigenmodes
-from rotorsim.machine.statespace import state_space
 from rotorsim.machine.support import (
     ConstantSupport,
     MatrixTable,

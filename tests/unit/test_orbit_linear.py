@@ -23,10 +23,9 @@ from rotorsim.orbit import (
     spectrum,
     steady_part,
 )
-from rotorsim.orbit.analysis import recognise
+from rotorsim.orbit.analysis import _fit_modes, growth_rate, recognise
 from rotorsim.orbit.clearance import contact_boundary, minimum_film
 from rotorsim.orbit.integrate import simulate_pieces
-from rotorsim.orbit.modes import _fit_modes, growth_rate
 from rotorsim.orbit.orbit import OrbitStatus, concatenate
 from rotorsim.orbit.problem import Controller, Method
 from rotorsim.orbit.spectrum import whirl_frequency_ratio

@@ -17,10 +17,10 @@ from rotorsim.machine.control import (
     loop_margins,
     proportional_derivative,
     receptance,
+    state_space,
 )
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.response import unbalance_response
-from rotorsim.machine.statespace import state_space
 from rotorsim.machine.support import ConstantSupport
 from rotorsim.rotor import Rotor
 

@@ -11,9 +11,9 @@ from rotorsim.bearing.interpolation import Coefficients
 from rotorsim.bearing.whirl import rigid_threshold
 from rotorsim.errors import InputError
 from rotorsim.files.rotors import load_rotor
+from rotorsim.machine.control import poles, state_space
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.matrices import state_matrix
-from rotorsim.machine.statespace import poles, state_space
 from rotorsim.machine.support import ConstantSupport
 from rotorsim.rotor import Rotor
 

@@ -9,7 +9,7 @@ from rotorsim.machine.modes import modes
 from rotorsim.machine.response import unbalance_response
 from rotorsim.machine.support import ConstantSupport
 from rotorsim.orbit import LinearForce, OrbitProblem, SpeedSchedule, simulate
-from rotorsim.orbit.modes import _fit_modes
+from rotorsim.orbit.analysis import _fit_modes
 from rotorsim.rotor import Rotor
 
 K = np.array([[2.2e8, 1.6e8], [-0.9e8, 3.0e8]])

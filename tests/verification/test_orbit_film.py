@@ -24,9 +24,9 @@ from rotorsim.orbit import (
     simulate,
     steady_part,
 )
+from rotorsim.orbit.analysis import growth_rate
 from rotorsim.orbit.film_force import LoadedFilm, SolvedFilmForce, can_be_mapped, loaded_film
 from rotorsim.orbit.forces import find_equilibrium, linearize_force
-from rotorsim.orbit.modes import growth_rate
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.rotor import Rotor
 

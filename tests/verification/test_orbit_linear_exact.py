@@ -15,7 +15,7 @@ from rotorsim.orbit import (
     orbit_ellipse,
     simulate,
 )
-from rotorsim.orbit.modes import growth_rate
+from rotorsim.orbit.analysis import growth_rate
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.orbit.problem import Method
 from rotorsim.rotor import Rotor

@@ -21,11 +21,10 @@ from rotorsim.orbit import (
     simulate,
     steady_part,
 )
-from rotorsim.orbit.analysis import recognise
+from rotorsim.orbit.analysis import growth_rate, recognise
 from rotorsim.orbit.force_map import FilmMapForce, ForceMap
 from rotorsim.orbit.forces import find_equilibrium, linearize_force
 from rotorsim.orbit.kernels import short_bearing_impedance
-from rotorsim.orbit.modes import growth_rate
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.orbit.spectrum import whirl_frequency_ratio
 from rotorsim.rotor import Rotor

@@ -11,11 +11,11 @@ from rotorsim.machine.control import (
     design_lqr,
     design_pd,
     loop_margins,
+    state_space,
 )
-from rotorsim.machine.statespace import state_space
 from rotorsim.orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, simulate
+from rotorsim.orbit.analysis import growth_rate
 from rotorsim.orbit.forces import find_equilibrium, linearize_force
-from rotorsim.orbit.modes import growth_rate
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.rotor import Rotor
 

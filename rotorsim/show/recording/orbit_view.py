@@ -40,7 +40,7 @@ FORCE_LENGTH = 0.45
 
 
 def _orbit_entity(name: str) -> str:
-    """Where a run's 2-D picture lives."""
+    """Return where a run's 2-D picture lives."""
     return f"orbit/{name}"
 
 

@@ -133,7 +133,7 @@ def _frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[_Indices, _Indices]:
 def indices_of_frames(
     runs: Sequence[Run], frames: Sequence[FilmFrame]
 ) -> list[tuple[list[rr.TimeColumn], _Indices]]:
-    """Where the frames of one model stand on every timeline.
+    """Return where the frames of one model stand on every timeline.
 
     runs : The run of the frames' name places them in time; else the first one; else none.
     frames : Those at rest by ascending speed, then those of the run by ascending time. Without the
@@ -185,7 +185,7 @@ def distinct_speeds(runs: Sequence[Run]) -> list[tuple[Run, _Indices]]:
 
 
 def _same_speed(one: Run, other: Run) -> bool:
-    """Whether two runs turn alike as long as both go on."""
+    """Return whether two runs turn alike as long as both go on."""
     if one.orbit.constant_speed != other.orbit.constant_speed:
         return False
     common = np.linspace(0.0, min(one.orbit.t[-1], other.orbit.t[-1]), 50)

@@ -47,7 +47,7 @@ def _verdict(curves: Sequence[StabilityCurve]) -> tuple[str, str]:
 
 
 def _range(curves: Sequence[StabilityCurve]) -> str:
-    """What happens between the lowest speed and the highest."""
+    """Return what happens between the lowest speed and the highest."""
     if len(curves[0].speed) < 2:
         return ""
     span = f"{curves[0].speed[0] * RPM:.0f} to {curves[0].speed[-1] * RPM:.0f} rpm"
