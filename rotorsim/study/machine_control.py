@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..files.parameters import place_named
+from ..machine.control import state_space
 from ..machine.machine import Machine
 from ..machine.matrices import massive_unknowns
 from ..machine.modes import modes
@@ -26,7 +27,6 @@ from ..machine.output_feedback import (
 )
 from ..machine.peaks import node_at
 from ..machine.reduction import Reduction, reduced
-from ..machine.statespace import state_space
 from ..model.machine import MachineControl
 from ..model.orbit import Design
 
