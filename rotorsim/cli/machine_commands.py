@@ -12,12 +12,13 @@ from .output import DONE, INCOMPLETE, Output, film_progress
 from .tables import grid
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from rich.table import Table
 
     from ..files.machine import MachineFile
     from ..study.machine import MachineResult
+    from ..study.sensitivity import Sensitivity
 
 
 def check_machine(output: Output, path: Path) -> int:
@@ -86,11 +87,13 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
     from ..study.lateral import lateral_document, lateral_study, response_document
     from ..study.machine import stability_document, supports_document
     from ..study.machine_map import map_of_entry
+    from ..study.sensitivity import sensitivities
     from .stability_results import plane_document, plane_table
 
     results = _analysed(output, path, workers)
     last = results[next(reversed(results))]
     study = lateral_study(last)
+    moving = sensitivities(last, workers)
     pictures = folder / "figures" / path.stem
     files: dict[str, Any] = {"figures": write_machine_figures(results, study, pictures)}
     planes = []
@@ -106,6 +109,7 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
     output.document(
         stability_document(results)
         | {
+            "sensitivities": [vars(one) for one in moving],
             "supports": supports_document(last),
             "unbalance_response": response_document(study, last.description.operating.continuous),
             "lateral": lateral_document(study),
@@ -116,6 +120,7 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
     if not (output.json or output.quiet):
         output.show(*map(_grid, tables.support_rows(results)), *_stability_tables(results))
         output.show(*map(_grid, (*tables.peak_rows(study), *tables.check_rows(study))))
+        output.show(*_sensitivity_tables(moving))
         for plane in planes:
             output.show(*plane_table(plane))
         output.note(f"figures: {pictures}; recording: {files['recording'][0]}")
@@ -137,6 +142,28 @@ def report_machine(output: Output, path: Path, page: Path, workers: int | None) 
     output.document({"report": written, "notes": list(study.notes)})
     output.show(f"{written} is written; open it in a browser")
     return _closing(output, results)
+
+
+def _sensitivity_tables(moving: Sequence[Sensitivity]) -> Iterator[Table]:
+    if not moving:
+        return
+    head = ("bearing or place", "parameter", "changed by", "threshold rpm", "growth 1/s")
+    table = grid("What moves the stability threshold", *head)
+    for one in moving:
+        moved = one.threshold_change
+        table.add_row(
+            one.support, one.parameter.replace("_", " "), _change(one),
+            "-" if moved is None else f"{moved * RPM:+.0f}", f"{one.growth_rate_change:+.3g}",
+        )  # fmt: skip
+    yield table
+
+
+def _change(one: Sensitivity) -> str:
+    if one.parameter == "supply_temperature":
+        return f"{one.change:+g} K"
+    if one.parameter == "destabilising_stiffness":
+        return f"{one.change / 1e6:+.3g} MN/m"
+    return f"{one.change:+g}" if one.parameter == "preload" else f"{one.change / one.value:+.0%}"
 
 
 def _grid(rows: tables.Rows) -> Table:

@@ -614,10 +614,10 @@ class _Imported:
                 )
             value = values.pop()
             rotor[ours] = bool(value) if key == "shear_effects" else float(value)
-        tapered = any("outer_diameter_right" in s or "inner_diameter_right" in s for s in sections)
-        if tapered or any("layer" in section for section in sections):
+        if any("layer" in section for section in sections):
             self.notes.append(
-                "Tapered and layered elements are integrated exactly here; ROSS approximates them."
+                "Layers share one shear deflection here; in ROSS each has its own (finer elements "
+                "bring the two together)."
             )
         return sections, rotor
 

@@ -70,7 +70,7 @@ class Machine:
             name = mount.name or f"support {number + 1}"
             mounts.append(Mount(self.rotor.node(mount.node), mount.support, name))
         object.__setattr__(self, "supports", tuple(mounts))
-        _ = self._places, self.speeds
+        _ = self.places, self.speeds
 
     @classmethod
     def on_identical(cls, rotor: Rotor, support: Support) -> Machine:
@@ -90,7 +90,7 @@ class Machine:
         return common_speeds([mount.support for mount in self.mounts])
 
     @cached_property
-    def _places(self) -> tuple[NDArray[np.intp], ...]:
+    def places(self) -> tuple[NDArray[np.intp], ...]:
         """Indices of each support's unknowns; its own ones follow the rotor's."""
         places, size = [], self.rotor.size
         for mount in self.mounts:
@@ -151,7 +151,7 @@ class Machine:
         m[..., :n, :n] = rotor.mass
         d[..., :n, :n] = rotor.damping + turning * rotor.gyroscopic
         k[..., :n, :n] = rotor.stiffness + turning * rotor.circulatory
-        for mount, place in zip(self.mounts, self._places, strict=True):
+        for mount, place in zip(self.mounts, self.places, strict=True):
             stiffness, damping, mass = mount.support.matrices(omega)
             block = (..., place[:, None], place)
             k[block] += stiffness
@@ -166,7 +166,7 @@ class Machine:
         pattern = np.zeros((self.size, self.size), dtype=bool)
         for name in MATRICES:
             pattern[:n, :n] |= getattr(rotor, name) != 0.0
-        for place in self._places:
+        for place in self.places:
             pattern[place[:, None], place] = True
         return BandForm.of(pattern)
 
@@ -187,7 +187,7 @@ class Machine:
         m = np.broadcast_to(rotor["mass"], (*omega.shape, *rotor["mass"].shape)).copy()
         d = rotor["damping"] + turning * rotor["gyroscopic"]
         k = rotor["stiffness"] + turning * rotor["circulatory"]
-        for mount, place in zip(self.mounts, self._places, strict=True):
+        for mount, place in zip(self.mounts, self.places, strict=True):
             stiffness, damping, mass = mount.support.matrices(omega)
             entry = (..., *form.entry(place[:, None], place))
             k[entry] += stiffness
@@ -210,6 +210,6 @@ class Machine:
             rotor.stiffness + speed * rotor.circulatory
             + s * (rotor.damping + speed * rotor.gyroscopic) + s * s * rotor.mass
         )  # fmt: skip
-        for mount, place in zip(self.mounts, self._places, strict=True):
+        for mount, place in zip(self.mounts, self.places, strict=True):
             z[place[:, None], place] += mount.support.dynamic_stiffness(s, speed)
         return z

@@ -50,6 +50,8 @@ Array = NDArray[np.float64]
 
 _GIVEN = "given"
 """Name of the thermal model of a machine without films."""
+_MESH_MODES = 8
+"""Modes whose change on twice the mesh is stated."""
 _SUBDIVISIONS = 4
 """Of every interval of speeds, where thresholds are looked for."""
 
@@ -122,6 +124,31 @@ class MachineResult:
     def verdict(self) -> Verdict | None:
         """At the highest known speed."""
         return None if self.modes is None else self.modes.verdicts[-1]
+
+    @cached_property
+    def mesh_change(self) -> tuple[tuple[float, float], ...]:
+        """Damped frequency [rad/s] of each mode, and its relative change on twice the mesh.
+
+        Of the lowest eight that oscillate, at the highest known speed.
+        """
+        if self.modes is None:
+            return ()
+        fine = self.description.rotor_with_unbalance(2)
+        nodes = self.machine.rotor.nodes
+        mounts = [
+            Mount(node_at(fine, nodes[int(mount.node)].position), mount.support, mount.name)
+            for mount in self.machine.mounts
+        ]
+        top = float(self.known[-1])
+        here = modes(self.machine, top).oscillating().eigenvalues[0]
+        finer = modes(Machine(fine, mounts), top).oscillating().eigenvalues[0]
+        wanted = np.sort_complex(1j * here.imag)[:_MESH_MODES].imag
+        found = []
+        for frequency in wanted:
+            value = here[np.abs(here.imag - frequency).argmin()]
+            apart = float(np.abs(finer - value).min() / abs(value))
+            found.append((float(frequency), apart))
+        return tuple(found)
 
     @cached_property
     def unbalance_response(self) -> UnbalanceResponse | None:
@@ -658,6 +685,13 @@ def _stability(result: MachineResult) -> dict[str, Any]:
             for one in result.thresholds
         ],
         "verdict": None if result.verdict is None else str(result.verdict),
+        "mesh": {
+            "nodes": len(result.machine.rotor.nodes),
+            "changes": [
+                {"damped_frequency": frequency, "relative_change": change}
+                for frequency, change in result.mesh_change
+            ],
+        },
     }
 
 
