@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 from ..film.geometry import CENTER
 from ..film.heat import entering_temperature
-from ..film.pads import pad_frames
+from ..film.pad_frame import pad_frames
 from ..film.solution import FilmSolution
 from ..model import Bearing, Cavitation, Feed
 from .operating_point import PadResult

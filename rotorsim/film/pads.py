@@ -26,15 +26,15 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Bearing, EccentricityTarget, Pad, Target
+from ..model import EccentricityTarget, Target
 from ..model.operating import is_unloaded
 from .banded import NoFilmError
 from .equilibrium import pressure_force
-from .geometry import CENTER, FilmGeometry, PadUnknowns, pad_unknowns
+from .geometry import CENTER
 from .growth import hot_problem
 from .layers import LayerIntegrals
 from .linearization import stiffness_matrix
-from .mesh import FilmMesh
+from .pad_frame import PadFrame, pad_frames
 from .problem import FilmProblem, FilmState, film_state
 
 Array = NDArray[np.float64]
@@ -57,93 +57,6 @@ _SETTLED = 0.005
 roughly."""
 _SAMPLES = 16
 """Tilts at which the root of a pad with E_n <= 0 is looked for."""
-
-
-@dataclass(frozen=True)
-class _PadFrame:
-    """One pad of a film: its cells, its unknowns, and how far it may tilt.
-
-    Attributes
-    ----------
-    pad : Pad
-    clearance : float
-        Machined [m].
-    preload : float
-    arm : float
-        R + t [m].
-    columns : (n,) bool array
-    unknowns : PadUnknowns
-    sine : (5, columns, 1) array
-        sin(theta - theta_p) at the points of `FilmGeometry.rest`.
-    """
-
-    pad: Pad
-    clearance: float
-    preload: float
-    arm: float
-    columns: Flags
-    unknowns: PadUnknowns
-    sine: Array
-
-    def eccentricity(self, q: Array) -> tuple[float, float]:
-        """E_n and E_t at the mid-plane [m]."""
-        cos, sin = math.cos(self.pad.pivot_angle), math.sin(self.pad.pivot_angle)
-        along = q[0] * cos + q[1] * sin + self.preload * self.clearance
-        if self.unknowns.pivot is not None:
-            along -= q[self.unknowns.pivot]
-        across = -q[0] * sin + q[1] * cos + self.arm * q[self.unknowns.tilt]
-        return float(along), float(across)
-
-    def level_tilt(self, q: Array) -> float:
-        """Tilt [rad] at which E_t = 0."""
-        return float(q[self.unknowns.tilt] - self.eccentricity(q)[1] / self.arm)
-
-    def tilt_limits(self, geometry: FilmGeometry, q: Array) -> tuple[float, float]:
-        """Tilts [rad] at which leading and trailing edge would touch the journal at `q`."""
-        h = geometry.thickness(q)[:, self.columns]
-        with np.errstate(divide="ignore"):
-            room = h / (self.arm * self.sine)
-        ahead = np.where(self.sine < 0.0, room, -np.inf)
-        behind = np.where(self.sine > 0.0, room, np.inf)
-        tilt = float(q[self.unknowns.tilt])
-        return tilt + float(ahead.max()), tilt + float(behind.min())
-
-    def idle_tilt(self, geometry: FilmGeometry, q: Array) -> float:
-        """Tilt [rad] at which the film diverges all over the pad, as far as there is room."""
-        along = self.eccentricity(q)[0]
-        edge = (1.0 if along <= 0.0 else -1.0) * self._half_beyond(along)
-        low, high = self.tilt_limits(geometry, q)
-        wanted = self.level_tilt(q) + along * math.tan(edge) / self.arm
-        return min(max(wanted, low + 0.05 * (high - low)), high - 0.05 * (high - low))
-
-    def _half_beyond(self, along: float) -> float:
-        """Angle from the pivot to the edge where the film would first converge [rad]."""
-        pad = self.pad
-        angle = (1.0 - pad.offset if along <= 0.0 else pad.offset) * pad.arc
-        return min(angle, 0.45 * math.pi)
-
-
-def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[_PadFrame, ...]:
-    """Frames of all pads of a film."""
-    _, places = pad_unknowns(bearing)
-    angles = np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])[[0, 1, 2, 0, 0]]
-    frames = []
-    for number, (pad, unknowns) in enumerate(zip(bearing.pads, places, strict=True)):
-        columns = mesh.region == number
-        sine = np.sin(angles[:, columns] - pad.pivot_angle)[:, :, None]
-        arm = bearing.journal_radius + pad.thickness
-        frames.append(
-            _PadFrame(
-                pad,
-                bearing.clearance_of(pad),
-                bearing.preload_of(pad),
-                arm,
-                columns,
-                unknowns,
-                sine,
-            )
-        )
-    return tuple(frames)
 
 
 class PadSearch:
@@ -172,7 +85,7 @@ class PadSearch:
         self._revived: frozenset[int] = frozenset()
 
     @cached_property
-    def frames(self) -> tuple[_PadFrame, ...]:
+    def frames(self) -> tuple[PadFrame, ...]:
         """Frames of the pads."""
         return pad_frames(self.whole.bearing, self.whole.mesh)
 
@@ -268,7 +181,7 @@ class PadSearch:
                 missing[place] = stiffness * (wanted - float(state.displacement[place]))
         return missing
 
-    def _pivot_under(self, state: FilmState, frame: _PadFrame) -> tuple[float, float]:
+    def _pivot_under(self, state: FilmState, frame: PadFrame) -> tuple[float, float]:
         """Deflection of a pad's pivot under the film's force, and the pivot's stiffness there.
 
         Newton's method takes the pivot's law at the film's force rather than at the deflection:
@@ -349,7 +262,7 @@ class PadSearch:
         """Numbers of the pads without pressure."""
         return frozenset(k for k, f in enumerate(self.frames) if not self._carries(state, f))
 
-    def _carries(self, state: FilmState, frame: _PadFrame) -> bool:
+    def _carries(self, state: FilmState, frame: PadFrame) -> bool:
         return bool(state.solution.pressure[frame.columns].max() > 0.0)
 
     def allowed(self, old: Array, new: Array, /) -> Array:
@@ -389,7 +302,7 @@ class PadSearch:
             result[:2] *= size / float(np.hypot(result[0], result[1]))
         return result
 
-    def _above_trivial(self, old: Array, new: Array, loaded: list[_PadFrame]) -> Array:
+    def _above_trivial(self, old: Array, new: Array, loaded: list[PadFrame]) -> Array:
         """Keep E_t near, and of every pad with E_n > 0 above zero, where its film carries."""
         new = new.copy()
         for frame in loaded:
@@ -553,10 +466,10 @@ class PadSearch:
         self._keep_out(self.unloaded - frozenset(found), q)
         return q
 
-    def _above(self, frame: _PadFrame, q: Array) -> bool:
+    def _above(self, frame: PadFrame, q: Array) -> bool:
         return frame.eccentricity(q)[0] > _LEAST_ECCENTRICITY * frame.clearance
 
-    def _asks(self, frame: _PadFrame, above: bool) -> bool:
+    def _asks(self, frame: PadFrame, above: bool) -> bool:
         return self._skewed or (not above and frame.pad.offset > 0.5)
 
     @property

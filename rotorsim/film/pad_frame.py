@@ -1,0 +1,103 @@
+"""One tilting pad seen from its pivot: its cells, its unknowns, and how far it may tilt."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model import Bearing, Pad
+from .geometry import FilmGeometry, PadUnknowns, pad_unknowns
+from .mesh import FilmMesh
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class PadFrame:
+    """One pad of a film: its cells, its unknowns, and how far it may tilt.
+
+    Attributes
+    ----------
+    pad : Pad
+    clearance : float
+        Machined [m].
+    preload : float
+    arm : float
+        R + t [m].
+    columns : (n,) bool array
+    unknowns : PadUnknowns
+    sine : (5, columns, 1) array
+        sin(theta - theta_p) at the points of `FilmGeometry.rest`.
+    """
+
+    pad: Pad
+    clearance: float
+    preload: float
+    arm: float
+    columns: Flags
+    unknowns: PadUnknowns
+    sine: Array
+
+    def eccentricity(self, q: Array) -> tuple[float, float]:
+        """E_n and E_t at the mid-plane [m]."""
+        cos, sin = math.cos(self.pad.pivot_angle), math.sin(self.pad.pivot_angle)
+        along = q[0] * cos + q[1] * sin + self.preload * self.clearance
+        if self.unknowns.pivot is not None:
+            along -= q[self.unknowns.pivot]
+        across = -q[0] * sin + q[1] * cos + self.arm * q[self.unknowns.tilt]
+        return float(along), float(across)
+
+    def level_tilt(self, q: Array) -> float:
+        """Tilt [rad] at which E_t = 0."""
+        return float(q[self.unknowns.tilt] - self.eccentricity(q)[1] / self.arm)
+
+    def tilt_limits(self, geometry: FilmGeometry, q: Array) -> tuple[float, float]:
+        """Tilts [rad] at which leading and trailing edge would touch the journal at `q`."""
+        h = geometry.thickness(q)[:, self.columns]
+        with np.errstate(divide="ignore"):
+            room = h / (self.arm * self.sine)
+        ahead = np.where(self.sine < 0.0, room, -np.inf)
+        behind = np.where(self.sine > 0.0, room, np.inf)
+        tilt = float(q[self.unknowns.tilt])
+        return tilt + float(ahead.max()), tilt + float(behind.min())
+
+    def idle_tilt(self, geometry: FilmGeometry, q: Array) -> float:
+        """Tilt [rad] at which the film diverges all over the pad, as far as there is room."""
+        along = self.eccentricity(q)[0]
+        edge = (1.0 if along <= 0.0 else -1.0) * self._half_beyond(along)
+        low, high = self.tilt_limits(geometry, q)
+        wanted = self.level_tilt(q) + along * math.tan(edge) / self.arm
+        return min(max(wanted, low + 0.05 * (high - low)), high - 0.05 * (high - low))
+
+    def _half_beyond(self, along: float) -> float:
+        """Angle from the pivot to the edge where the film would first converge [rad]."""
+        pad = self.pad
+        angle = (1.0 - pad.offset if along <= 0.0 else pad.offset) * pad.arc
+        return min(angle, 0.45 * math.pi)
+
+
+def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
+    """Frames of all pads of a film."""
+    _, places = pad_unknowns(bearing)
+    angles = np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])[[0, 1, 2, 0, 0]]
+    frames = []
+    for number, (pad, unknowns) in enumerate(zip(bearing.pads, places, strict=True)):
+        columns = mesh.region == number
+        sine = np.sin(angles[:, columns] - pad.pivot_angle)[:, :, None]
+        arm = bearing.journal_radius + pad.thickness
+        frames.append(
+            PadFrame(
+                pad,
+                bearing.clearance_of(pad),
+                bearing.preload_of(pad),
+                arm,
+                columns,
+                unknowns,
+                sine,
+            )
+        )
+    return tuple(frames)
