@@ -30,6 +30,11 @@ _MAX_REVISIONS = 6
 """Times that the set of unloaded pads may be revised."""
 _ATTITUDES = 24
 """Directions in which the journal is tried where Newton's method finds no attitude."""
+_MAX_TURNS = 16
+"""Times that position and temperatures are found in turn."""
+_TURN_RELAXATION = 0.7
+_IN_TURN_TOLERANCE = 1e-5
+"""Of the forces, relative to the load."""
 _MAX_RETRIES = 2
 """Times that a thermal film is solved which does not converge."""
 
@@ -87,7 +92,43 @@ def solve_pads(
     if not problem.is_thermal or not cold.converged:
         return _conclude(search, cold.state, None, cold)
     thermal = _thermal(search, cold.state.displacement, uniform_heat(problem), walls)
+    if not (thermal.converged or thermal.out_of_range):
+        return _in_turn(search, thermal, cold, walls)
     return _conclude(search, thermal.state, thermal, cold)
+
+
+def _in_turn(
+    search: PadSearch, thermal: ThermalFilm, cold: _Cold, walls: WallsOf
+) -> FilmSolution:  # fmt: skip
+    """Position and temperatures in turn, where they do not settle together: soft pivots, mostly.
+
+    `thermal` and `cold` are what was found before, for where this does not settle either.
+    """
+    q, heat = cold.state.displacement, uniform_heat(search.whole)
+    for _ in range(_MAX_TURNS):
+        layers = _warm_layers(search.whole, heat)
+        found = _isothermal(search, q, layers)
+        if isinstance(search.target, EccentricityTarget) and not found.converged:
+            found = _by_attitude(search, layers) or replace(found, unreachable=True)
+        if not found.converged:
+            if found.unreachable:
+                return _conclude(search, found.state, None, found)
+            break
+        q = found.state.displacement
+        film = solve_thermal_film(search.problem, q, initial=heat, walls=walls(search.problem))
+        if not film.converged:
+            break
+        if search(film.state)[1] < _IN_TURN_TOLERANCE:
+            return _conclude(search, film.state, film, cold)
+        heat = _between(heat, film.heat)
+    return _conclude(search, thermal.state, thermal, cold)
+
+
+def _between(old: Heat, new: Heat) -> Heat:
+    """Part of the way from one field of temperatures to another."""
+    pairs = (old.temperature, new.temperature), (old.bush, new.bush), (old.shaft, new.shaft)
+    film, bush, shaft = (a + _TURN_RELAXATION * (b - a) for a, b in pairs)
+    return Heat(np.asarray(film), np.asarray(bush), float(shaft))
 
 
 def _heat_shape(problem: FilmProblem) -> tuple[int, int, int]:
