@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .show.viewer import open_viewer
     from .status import SolveStatus, Stability
     from .study.machine import analyse_machine
+    from .study.machine_motion import forced_response, largest_disturbance, limit_cycles, simulate
     from .study.machines import modes, state_space, unbalance_response
     from .study.orbits import simulate_orbit
     from .study.points import solve
@@ -53,6 +54,9 @@ __all__ = [
     "TableError",
     "__version__",
     "analyse_machine",
+    "forced_response",
+    "largest_disturbance",
+    "limit_cycles",
     "load_machine",
     "load_scenario",
     "modes",
@@ -60,6 +64,7 @@ __all__ = [
     "record",
     "shipped_scenarios",
     "shipped_tables",
+    "simulate",
     "simulate_orbit",
     "solve",
     "solve_case",
@@ -85,6 +90,12 @@ _HOMES = {
     "show.viewer": ("open_viewer",),
     "status": ("SolveStatus", "Stability"),
     "study.machine": ("analyse_machine",),
+    "study.machine_motion": (
+        "forced_response",
+        "largest_disturbance",
+        "limit_cycles",
+        "simulate",
+    ),
     "study.machines": ("modes", "state_space", "unbalance_response"),
     "study.orbits": ("simulate_orbit",),
     "study.sweep": ("tabulate",),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..rows import RPM, number
 from ..study import machine_tables as tables
-from .output import DONE, INCOMPLETE, Output, film_progress
+from .output import DONE, INCOMPLETE, Output, as_typed, film_progress, progress_bar
 from .tables import grid
 
 if TYPE_CHECKING:
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rich.table import Table
 
     from ..files.machine import MachineFile
+    from ..orbit.motion import Motion
     from ..study.machine import MachineResult
     from ..study.sensitivity import Sensitivity
 
@@ -92,6 +93,12 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
 
     results = _analysed(output, path, workers)
     last = results[next(reversed(results))]
+    motion = None
+    if last.description.orbit is not None:
+        from ..study.machine_motion import motion_document, simulate
+
+        output.note("motion in time")
+        motion = simulate(last.description, result=last)
     study = lateral_study(last)
     moving = sensitivities(last, workers)
     pictures = folder / "figures" / path.stem
@@ -104,6 +111,12 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
         named = [(f"map_{number_}", one) for _, one in plane_figures(plane, last.description.title)]
         files["figures"] += save_figures(named, pictures)
         files.setdefault("maps", []).append(write(plane.dataset, pictures / f"map_{number_}.nc"))
+    if motion is not None:
+        from ..show.machine_job import write_motion
+
+        target = folder / "logs" / f"{path.stem}_motion.rrd"
+        recorded, *more = write_motion(last.description, motion, target, pictures, result=last)
+        files["motion"], files["figures"] = recorded, files["figures"] + more
     output.note("recording")
     files["recording"] = [write_machine_recording(results, folder / "logs" / f"{path.stem}.rrd")]
     output.document(
@@ -116,6 +129,7 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
             "maps": [plane_document(one) for one in planes],
             "files": files,
         }
+        | ({} if motion is None else {"motion": motion_document(motion)})
     )
     if not (output.json or output.quiet):
         output.show(*map(_grid, tables.support_rows(results)), *_stability_tables(results))
@@ -128,6 +142,92 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
         output.warn(text)
     code = _closing(output, results)
     return INCOMPLETE if any(one.failed_points for one in planes) else code
+
+
+def machine_orbit(
+    output: Output,
+    path: Path,
+    recording: Path | None,
+    figures: bool,
+    animations: list[str],
+    steady: bool,
+    model: str | None,
+) -> int:
+    """Simulate a machine in time, record it and say what its stations do."""
+    from dataclasses import replace
+
+    from ..files.machine import load_machine
+    from ..show.machine_job import write_motion
+    from ..study.machine_motion import motion_problem, simulate
+
+    loaded = load_machine(path)
+    settings = loaded.orbit
+    if settings is not None and model is not None:
+        settings = replace(settings, thermal_model=model)
+    problem = motion_problem(loaded, settings)
+    with progress_bar(output, "motion", problem.drive_turns) as progress:
+        motion = simulate(
+            loaded, problem=problem,
+            consume=lambda piece: progress(float(piece.revolutions[-1])) if piece.t.size else None,
+        )  # fmt: skip
+    files = write_motion(
+        loaded, motion, recording or Path("logs") / f"{path.stem}.rrd",
+        Path("figures") / path.stem if figures or animations else None, animations, steady,
+    )  # fmt: skip
+    return _say_motion(output, motion, files)
+
+
+def machine_limit_cycles(output: Output, path: Path) -> int:
+    """Follow the whirl that begins at a machine's threshold speed, and draw it."""
+    from ..files.machine import load_machine
+    from ..show.figures.orbits import branch_plot
+    from ..show.job import save_figures
+    from ..study.machine_motion import branch_document, limit_cycles
+
+    loaded = load_machine(path)
+    branch = limit_cycles(loaded)
+    folder = Path("figures") / path.stem
+    files = save_figures([("limit_cycles", branch_plot(branch, loaded.title))], folder)
+    output.document(branch_document(branch) | {"figures": files})
+    if not (output.json or output.quiet):
+        table = grid("Limit cycles", "rpm", "f/rev", *(f"{n} µm" for n in branch.names), "")
+        for i in range(0, branch.speed.size, max(1, branch.speed.size // 12)):
+            table.add_row(
+                f"{branch.speed[i] * RPM:.0f}",
+                number(float(branch.frequency[i] / branch.speed[i]), 3),
+                *(number(float(size) * 1e6) for size in branch.amplitude[i]),
+                "stable" if branch.stable[i] else "unstable",
+            )
+        output.show(table, *(str(file) for file in files))
+    if branch.threshold is not None:
+        kind = "supercritical" if branch.supercritical else "subcritical"
+        output.note(f"{kind} from {branch.threshold * RPM:.0f} rpm; ends with {branch.message}")
+    return DONE
+
+
+def _say_motion(output: Output, motion: Motion, files: list[Path]) -> int:
+    from ..study.machine_motion import motion_document
+
+    document = motion_document(motion)
+    output.document(document | {"recording": files[0], "figures": files[1:]})
+    if not (output.json or output.quiet):
+        head = ("station", "max e/c", "amplitude µm", "whirl ratio", "outcome")
+        table = grid(f"Motion: {document['note']}", *head)
+        for row in document["stations"]:
+            ratio = row["max_eccentricity_ratio"] if row["film"] else None
+            table.add_row(
+                row["station"], number(ratio, 3), number(row["amplitude"] * 1e6),
+                number(row["whirl_frequency_ratio"], 3), row["status"].replace("_", " "),
+            )  # fmt: skip
+        output.show(table, *(str(file) for file in files[1:]))
+        output.show(f"recorded in {files[0]}; look at it: rotorsim view {as_typed(files[0])}")
+    output.note(
+        f"{document['unknowns']} unknowns; eigenvalues changed by the reduction: "
+        f"{document['reduction_error']:.1e}"
+    )
+    if motion.message:
+        output.warn(motion.message)
+    return INCOMPLETE if motion.status.value == "integration_failed" else DONE
 
 
 def report_machine(output: Output, path: Path, page: Path, workers: int | None) -> int:

@@ -55,15 +55,32 @@ def orbit(
     live: Annotated[
         bool, typer.Option("--live", help="Show the run in the viewer while it is integrated.")
     ] = False,
+    limit_cycles: Annotated[
+        bool, typer.Option("--limit-cycles", help="Of a machine: follow its whirl over speed.")
+    ] = False,
     workers: WorkersOption = None,
 ) -> int:
-    """Simulate the scenario's orbit in time and record it.
+    """Simulate the scenario's orbit, or a machine's motion, in time and record it.
 
     With force = "linear" in the scenario the coefficient table is used, with "film" the nonlinear
     film itself.
 
     Example: rotorsim orbit scenarios/orbit_limit_cycle.toml --gif
     """
+    from .machine_commands import is_machine, machine_limit_cycles, machine_orbit
+
+    if limit_cycles and not is_machine(scenario):
+        raise InputError("goes with a machine file", key="--limit-cycles", value=scenario)
+    if is_machine(scenario):
+        for key, value in (("--table", table), ("--bearing", bearing), ("--live", live or None)):
+            if value is not None:
+                raise InputError("goes with a bearing's scenario, not with a machine", key=key)
+        if limit_cycles:
+            return machine_limit_cycles(output, scenario)
+        check_file(recording or Path("logs") / f"{scenario.stem}.rrd", ".rrd", scenario)
+        _check_mp4(mp4)
+        suffixes = [suffix for wanted, suffix in ((gif, ".gif"), (mp4, ".mp4")) if wanted]
+        return machine_orbit(output, scenario, recording, figures, suffixes, steady, model)
     from ..files.scenario import load_scenario
     from ..orbit.description import describe_orbit
     from ..show.job import orbit_figures, record_scenario, save_figures

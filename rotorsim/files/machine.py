@@ -31,6 +31,7 @@ from ..model.machine import (
     UnbalanceEntry,
     distinct_names,
 )
+from ..model.machine_orbit import MachineOrbit
 from ..model.shaft import (
     STEEL,
     Bore,
@@ -141,6 +142,8 @@ class MachineFile:
     map : tuple of MapEntry
     tolerances : MachineTolerances or None
     control : MachineControl or None
+    orbit : MachineOrbit or None
+        What is simulated in time.
     source : Path or None
         The file.
     text : str
@@ -165,6 +168,7 @@ class MachineFile:
     map: tuple[MapEntry, ...] = ()
     tolerances: MachineTolerances | None = None
     control: MachineControl | None = None
+    orbit: MachineOrbit | None = None
     source: Annotated[Path | None, NOT_IN_FILES] = None
     text: Annotated[str, NOT_IN_FILES] = field(default="", repr=False)
 
@@ -176,6 +180,9 @@ class MachineFile:
                 beam.check_place(entry.at, f"{word}[{i}].at")
         for i, entry in enumerate(self.lateral.destabilising_stiffness):
             beam.check_place(entry.at, f"lateral.destabilising_stiffness[{i}].at")
+        for word in ("step", "harmonic", "blade_loss", "rub") if self.orbit is not None else ():
+            for i, entry in enumerate(getattr(self.orbit, word)):
+                beam.check_place(entry.at, f"orbit.{word}[{i}].at")
         distinct_names(self.support, "support")
         distinct_names(self.seal, "seal")
         places = [entry.at for entry in self.support]
@@ -321,6 +328,7 @@ class MachineFile:
         if self.control is not None:
             named = (*self.control.actuator, *self.control.sensor)
             places += [place_named(self, text, "control.actuator") for text in named]
+        places += [entry.at for entry in (self.orbit.placed if self.orbit else ())]
         rotor = beam_rotor(self.rotor.beam, [*places, *more], refinement)
         top = max(self.operating.speeds)
         above_zero("operating", speed=top)

@@ -50,7 +50,7 @@ def weight(rotor: Rotor) -> Array:
     return np.asarray(rotor.mass @ rotor.translation((STANDARD_GRAVITY, 0.0)), dtype=float)
 
 
-def _reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Array:
+def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Array:
     """Loads (2, 2) [N] on two supports.
 
     rotor : With positions of its nodes.
@@ -150,7 +150,7 @@ def static_equilibrium(
         return journal, off, np.eye(2 * count) + condensed @ softness
 
     if count == 2:
-        loads: Array = _reactions_by_statics(rotor, force, nodes).ravel()
+        loads: Array = reactions_by_statics(rotor, force, nodes).ravel()
         journal, off, _ = answer(loads)
         off = np.zeros_like(off)
     else:

@@ -22,9 +22,9 @@ from .entries import (
 )
 
 _Force = Annotated[float, Quantity("force", "500 N", "any")]
-_Forces = Annotated[tuple[_Force, _Force], Example(["500 N", "0 N"])]
+Forces = Annotated[tuple[_Force, _Force], Example(["500 N", "0 N"])]
 _Phase = Annotated[float, Quantity("angle", "90 deg", "any")]
-_Phases = tuple[_Phase, _Phase]
+Phases = tuple[_Phase, _Phase]
 _Acceleration = Annotated[float, Quantity("acceleration", "10 m/s^2", "any")]
 
 
@@ -55,7 +55,7 @@ def _check_times(load: StepForce | HarmonicForce | BaseMotion) -> None:
 class StepForce:
     """A force (fx, fy) [N] on a node from `start` until `stop` [s]."""
 
-    force: _Forces
+    force: Forces
     start: Instant = 0.0
     stop: Duration = math.inf
     node: _Node = 0
@@ -68,9 +68,9 @@ class StepForce:
 class HarmonicForce:
     """A force fx cos(W t + px), fy cos(W t + py): forces [N], frequency W [rad/s], phases [rad]."""
 
-    force: _Forces
+    force: Forces
     frequency: Frequency
-    phase: _Phases = (0.0, 0.0)
+    phase: Phases = (0.0, 0.0)
     start: Instant = 0.0
     stop: Duration = math.inf
     node: _Node = 0
@@ -93,7 +93,7 @@ class BaseMotion:
 
     displacement: Annotated[Pair, Example(["10 um", "0 um"])]
     frequency: Frequency
-    phase: _Phases = (0.0, 0.0)
+    phase: Phases = (0.0, 0.0)
     start: Instant = 0.0
     stop: Duration = math.inf
 

@@ -13,7 +13,21 @@ from typing import Annotated, Any
 
 from ..errors import InputError
 from ..units import parse_quantity
-from .entries import Angle, Displacement, Example, Leaf, Length, Number, Quantity, Speed
+from .entries import (
+    Angle,
+    Displacement,
+    Example,
+    Leaf,
+    Length,
+    Mass,
+    Number,
+    Quantity,
+    Speed,
+)
+from .entries import (
+    Clearance as RadialClearance,
+)
+from .machine_orbit import MachineForce
 from .operating import MAX_COUNT, SpeedRange, ascending
 from .orbit import Design
 from .shaft import Place
@@ -72,6 +86,106 @@ class Pedestal:
     damping: _DampingMatrix = ((0.0, 0.0), (0.0, 0.0))
 
 
+_Viscosity = Annotated[float, Quantity("dynamic viscosity", "0.01 Pa*s")]
+
+
+@dataclass(frozen=True)
+class EndSeal:
+    """A narrow gap at each end of a damper.
+
+    clearance, length : Of the gap, radial and along the shaft [m].
+    """
+
+    clearance: Annotated[RadialClearance, Example("50 um")]
+    length: Annotated[Length, Example("2 mm")]
+
+
+@dataclass(frozen=True)
+class Damper:
+    """A squeeze-film damper: the bearing's outer ring, which does not turn, in a film of its own.
+
+    diameter, length, radial_clearance : Of the film [m].
+    viscosity : [Pa s]
+    mass : Of what moves with the outer ring [kg].
+    stiffness, damping : (2, 2) tuples or None. Of a centring spring, which is set so that the ring
+        stands centred under the static load [N/m, N s/m]; without one the ring rests on the bottom
+        of its housing.
+    cavitating : Whether the film ruptures, or bears pressures of either sign.
+    end_seal : None: the ends are open.
+    """
+
+    diameter: Annotated[Length, Example("100 mm")]
+    length: Annotated[Length, Example("30 mm")]
+    radial_clearance: Annotated[RadialClearance, Example("100 um")]
+    viscosity: _Viscosity
+    mass: Annotated[Mass, Example("2 kg")]
+    stiffness: _StiffnessMatrix | None = None
+    damping: _DampingMatrix | None = None
+    cavitating: bool = True
+    end_seal: EndSeal | None = None
+
+    @property
+    def leakage(self) -> float | None:
+        """Conductance of the end seals, times 12 mu L/c^3 [-]; None: open ends."""
+        seal = self.end_seal
+        if seal is None:
+            return None
+        return (seal.clearance / self.radial_clearance) ** 3 * self.length / seal.length
+
+
+@dataclass(frozen=True)
+class FloatingRing:
+    """A bearing of two films with a ring between them.
+
+    inner_diameter, outer_diameter : Of the films [m].
+    inner_length, outer_length, inner_clearance, outer_clearance : Of the films; clearances are
+        radial [m].
+    inner_viscosity, outer_viscosity : [Pa s]
+    mass : Of the ring [kg].
+    turning : Whether the ring turns with the films' friction (full-floating) or is held
+        (semi-floating).
+    """
+
+    inner_diameter: Annotated[Length, Example("10 mm")]
+    outer_diameter: Annotated[Length, Example("16 mm")]
+    inner_length: Annotated[Length, Example("6 mm")]
+    outer_length: Annotated[Length, Example("8 mm")]
+    inner_clearance: Annotated[RadialClearance, Example("15 um")]
+    outer_clearance: Annotated[RadialClearance, Example("35 um")]
+    inner_viscosity: _Viscosity
+    outer_viscosity: _Viscosity
+    mass: Annotated[Mass, Example("10 g")]
+    turning: bool = True
+
+    def __post_init__(self) -> None:
+        if self.outer_diameter <= self.inner_diameter:
+            raise InputError("must be larger than inner_diameter", key="outer_diameter")
+
+    @property
+    def inertia(self) -> float:
+        """Polar, of a ring of uniform thickness [kg m^2]."""
+        return 0.125 * self.mass * (self.inner_diameter**2 + self.outer_diameter**2)
+
+    @property
+    def drags(self) -> tuple[float, float]:
+        """Petroff's torque over the speed difference of both centred films [N m s]."""
+        return tuple(
+            0.25 * math.pi * viscosity * diameter**3 * length / clearance
+            for viscosity, diameter, length, clearance in (
+                (self.inner_viscosity, self.inner_diameter, self.inner_length,
+                 self.inner_clearance),
+                (self.outer_viscosity, self.outer_diameter, self.outer_length,
+                 self.outer_clearance),
+            )
+        )  # type: ignore[return-value]  # fmt: skip
+
+    @property
+    def speed_ratio(self) -> float:
+        """Speed of the centred ring over the shaft's (Petroff); 0 where it is held."""
+        inner, outer = self.drags
+        return inner / (inner + outer) if self.turning else 0.0
+
+
 @dataclass(frozen=True)
 class SupportEntry:
     """A bearing at a place of the shaft.
@@ -83,6 +197,9 @@ class SupportEntry:
         `angle`.
     elevation : Of the housing, upwards [m].
     angle : By which the bearing is turned in its housing [rad].
+    damper : In series with the bearing, in place of a pedestal.
+    ring : A floating-ring bearing, in place of the three above.
+    force : Of its films in time; None: as [orbit] says.
     """
 
     at: Annotated[Place, Example("140 mm")]
@@ -95,16 +212,21 @@ class SupportEntry:
     elevation: Displacement = 0.0
     angle: Angle = 0.0
     pedestal: Pedestal | None = None
+    damper: Damper | None = None
+    ring: FloatingRing | None = None
+    force: MachineForce | None = None
 
     def __post_init__(self) -> None:
+        if self.pedestal is not None and self.damper is not None:
+            raise InputError("goes without pedestal: remove one of them", key="damper")
         given = [
             key
-            for key in ("bearing", "coefficients", "stiffness")
+            for key in ("bearing", "coefficients", "stiffness", "ring")
             if getattr(self, key) is not None
         ]
         if len(given) != 1:
             raise InputError(
-                'needs one of bearing = "file.toml", coefficients = "file.csv" or '
+                'needs one of bearing = "file.toml", coefficients = "file.csv", ring = {...} or '
                 f"stiffness = ...{' (it has ' + ' and '.join(given) + ')' if given else ''}",
                 key="bearing" if not given else given[1],
             )

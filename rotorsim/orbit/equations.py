@@ -18,7 +18,7 @@ from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
 from ..rotor import Rotor
 from .film_force import SolvedFilmForce
 from .forces import CompilableForce, CompiledForce
-from .kernels import film_force, film_force_series
+from .kernels import film_force, film_force_series, shaft
 from .problem import OrbitProblem
 
 Array = NDArray[np.float64]
@@ -103,7 +103,7 @@ def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries, Tangent |
     size, schedule = rotor.mass.shape[0], problem.schedule.knots
 
     def speed_at(t: float) -> float:
-        return float(_shaft(t, schedule)[1])
+        return float(shaft(t, schedule)[1])
 
     if isinstance(force, SolvedFilmForce):
         moving = problem.moving
@@ -209,18 +209,6 @@ def _cosine_and_sine(amplitude: tuple[float, float], phase: tuple[float, float])
 
 
 @compiled()
-def _shaft(t: float, schedule: Array) -> tuple[float, float, float]:
-    """Angle, speed and acceleration of the shaft; rows: time, speed, angle, acceleration."""
-    i = schedule.shape[0] - 2
-    while i > 0 and t < schedule[i, 0]:
-        i -= 1
-    since = t - schedule[i, 0]
-    a = schedule[i, 3]
-    w = schedule[i, 1]
-    return schedule[i, 2] + since * (w + 0.5 * a * since), w + a * since, a
-
-
-@compiled()
 def _add_loads(t: float, force: Array, shapes: Array, times: Array) -> None:
     for k in range(times.shape[0]):
         if times[k, 1] <= t < times[k, 2]:
@@ -267,7 +255,7 @@ def _motion_rates(
     size = rotor.shape[1]
     rates = np.empty(state.size)
     force = np.zeros(size)
-    phi, w, alpha = _shaft(t, schedule)
+    phi, w, alpha = shaft(t, schedule)
     force[:2] = film[:2]
     force[size + 2 - film.size :] += film[2:]
     for k in range(unbalance.shape[0]):
@@ -336,7 +324,7 @@ def _compiled_state_rates(
 ) -> Array:
     """State rates with the film force of one of the compiled models."""
     size = rotor.shape[1]
-    speed = _shaft(t, schedule)[1]
+    speed = shaft(t, schedule)[1]
     vx, vy = float(state[size]), float(state[size + 1])
     film = np.empty(2)
     film[0], film[1] = film_force(kind, state[0], state[1], vx, vy, speed, numbers, table)

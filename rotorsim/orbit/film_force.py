@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -36,22 +38,43 @@ from .forces import BearingForce
 
 Array = NDArray[np.float64]
 
+_FIELD_SPEEDS, _SLOWEST_FIELD = 7, 0.1
+"""Of heated films of a run through the speeds, and the slowest over the highest."""
 _THINNEST = 2e-3
 """Film over clearance up to which it is solved; closer trial steps are pulled back to it."""
+
+
+_FIELDS = ("f0", "f2", "f2_axial", "g", "pressure_share", "shear_share")
+
+
+def field_on(solution: FilmSolution, other: FilmSolution, values: Array) -> Array:
+    """Field (n, m, ...) of another speed's film on this one's mesh: at the same place of the bush.
+
+    Both meshes have the same cells along the axis; around they may be graded and turned otherwise.
+    """
+    wanted = np.mod(solution.problem.mesh.theta + solution.frame, 2.0 * math.pi)
+    known = np.mod(other.problem.mesh.theta + other.frame, 2.0 * math.pi)
+    order = np.argsort(known)
+    first, last = order[:1], order[-1:]
+    angle = np.concatenate([known[last] - 2.0 * math.pi, known[order], known[first] + 2 * math.pi])
+    rows = values[np.concatenate([last, order, first])]
+    i = np.searchsorted(angle, wanted, side="right") - 1
+    share = (wanted - angle[i]) / (angle[i + 1] - angle[i])
+    share = share.reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray((1.0 - share) * rows[i] + share * rows[i + 1])
+
+
+def _layers_on(solution: FilmSolution, other: FilmSolution) -> LayerIntegrals:
+    layers = other.state.layers
+    return replace(layers, **{n: field_on(solution, other, getattr(layers, n)) for n in _FIELDS})
 
 
 @dataclass(frozen=True)
 class LoadedFilm:
     """A film force with the load that it carries.
 
-    Attributes
-    ----------
-    force : BearingForce
-    load : float
-        Static load along x [N].
-    bearing : Bearing
-    note : str
-        What the force takes for granted, for messages and labels.
+    load : Static load along x [N].
+    note : What the force takes for granted, for messages and labels.
     """
 
     force: BearingForce
@@ -64,20 +87,15 @@ class LoadedFilm:
 class SolvedFilmForce:
     """The film solved at every call, from the full cells of the call before.
 
-    Parameters
-    ----------
-    problem : FilmProblem
-        Mesh, slots and grooves; they stand still in the bush while the journal moves. Its speed is
-        replaced by that of the call.
-    layers : LayerIntegrals
-        Viscosity across the film, frozen in space.
-    frame : float
-        Angle of the problem's x axis in the load frame [rad].
-    bearing : Bearing
-        In the load frame.
-    rest : (q,) array
-        Displacements that leave a film everywhere, those of the operating point; problem's frame.
-    name : str
+    problem : Mesh, slots and grooves; they stand still in the bush while the journal moves. Its
+        speed is replaced by that of the call.
+    layers : Viscosity across the film, frozen in space.
+    others : The same of other speeds [rad/s], ascending: the viscosity of the moment lies between
+        them.
+    frame : Angle of the problem's x axis in the load frame [rad].
+    bearing : In the load frame.
+    rest : (q,) array. Displacements that leave a film everywhere, those of the operating point;
+        problem's frame.
 
     Notes
     -----
@@ -91,6 +109,7 @@ class SolvedFilmForce:
     bearing: Bearing
     rest: Array
     name: str = "film"
+    others: tuple[tuple[float, LayerIntegrals], ...] = ()
     _full: NDArray[np.bool_] | None = field(default=None, init=False, repr=False)
 
     @property
@@ -99,8 +118,13 @@ class SolvedFilmForce:
         return self.bearing.radial_clearance
 
     @classmethod
-    def of(cls, solution: FilmSolution) -> SolvedFilmForce:
-        """Force of the solved film, its viscosity field and its clearance kept."""
+    def of(cls, solution: FilmSolution, others: Sequence[FilmSolution] = ()) -> SolvedFilmForce:
+        """Force of the solved film, its viscosity field and its clearance kept.
+
+        others : The same film at other speeds, whose viscosity fields are kept as well.
+        """
+        fields = [(solution.problem.speed, solution.state.layers)]
+        fields += [(one.problem.speed, _layers_on(solution, one)) for one in others]
         mesh = solution.problem.mesh
         # All pads move, those without load as well.
         geometry = film_geometry(solution.problem.bearing, mesh)
@@ -114,7 +138,19 @@ class SolvedFilmForce:
             bearing=solution.problem.bearing.turned(solution.frame),
             rest=solution.state.displacement,
             name="film" if solution.thermal is None else "film_frozen_viscosity",
+            others=tuple(sorted(fields, key=lambda field: field[0])) if others else (),
         )
+
+    def _layers(self, speed: float) -> LayerIntegrals:
+        """Viscosity field at a speed: linear between the known ones, held beyond them."""
+        if not self.others:
+            return self.layers
+        speeds = [known for known, _ in self.others]
+        i = int(np.clip(np.searchsorted(speeds, speed) - 1, 0, len(speeds) - 2))
+        share = min(max((speed - speeds[i]) / (speeds[i + 1] - speeds[i]), 0.0), 1.0)
+        low, high = self.others[i][1], self.others[i + 1][1]
+        mixed = {n: (1.0 - share) * getattr(low, n) + share * getattr(high, n) for n in _FIELDS}
+        return replace(low, **mixed)
 
     @property
     def pads(self) -> tuple[str, ...]:
@@ -174,7 +210,8 @@ class SolvedFilmForce:
         if speed != problem.speed:
             problem = replace(problem, speed=speed)
         state = film_state(
-            problem, self._within(self._turn.T @ q), self.layers, velocity=self._turn.T @ v,
+            problem, self._within(self._turn.T @ q), self._layers(speed),
+            velocity=self._turn.T @ v,
             start=self._full,
         )  # fmt: skip
         if not (state.solution.converged and np.all(np.isfinite(state.force))):
@@ -217,11 +254,7 @@ def can_be_mapped(case: Case) -> bool:
 def prepare_map(case: Case, progress: Progress | None = None) -> None:
     """Solve the map that the film of `case` is taken from, unless it is kept already.
 
-    Parameters
-    ----------
-    case : Case
-    progress : callable, optional
-        See `film_force_map`; not called where there is nothing to do.
+    progress : See `film_force_map`; not called where there is nothing to do.
     """
     if can_be_mapped(case):
         film_force_map(_length_to_diameter(case), case.film.cavitation, progress=progress)
@@ -232,24 +265,23 @@ def _length_to_diameter(case: Case) -> float:
 
 
 def loaded_film(
-    case: Case, speed: float, *, cache: Path | None = None, progress: Progress | None = None
+    case: Case,
+    speed: float,
+    *,
+    other_speeds: Sequence[float] = (),
+    cache: Path | None = None,
+    progress: Progress | None = None,
 ) -> LoadedFilm:
     """Film force of a case, with its load.
 
-    Parameters
-    ----------
-    case : Case
-    speed : float
-        Of the operating point [rad/s]: where the mesh is graded, where ``max_film`` holds its line
-        p = 0, whose viscosity field a heated film keeps, and at which an eccentricity ratio is
+    speed : Of the operating point [rad/s]: where the mesh is graded, where ``max_film`` holds its
+        line p = 0, whose viscosity field a heated film keeps, and at which an eccentricity ratio is
         turned into a load.
-    cache, progress
-        See `film_force_map`.
+    other_speeds : At which the viscosity field of a heated film is solved as well [rad/s]: that of
+        the moment lies between them.
+    cache, progress : See `film_force_map`.
 
-    Raises
-    ------
-    InputError
-        The operating point cannot be found.
+    Raises InputError: The operating point cannot be found.
     """
     if can_be_mapped(case):
         return _mapped(case, speed, cache, progress)
@@ -260,16 +292,40 @@ def loaded_film(
     if case.bearing.pads:
         _check_inertia(case.bearing)
         notes.append("all pads move, with their inertia")
+    others = []
     if solution.thermal is not None:
-        notes.append(f"viscosity field of the operating point at {rpm}, frozen")
+        others = other_films(case, load, other_speeds)
+        slowest = min((one.problem.speed for one in others), default=speed) * 30.0 / math.pi
+        notes.append(
+            f"viscosity field of the moment, from {len(others) + 1} operating points between "
+            f"{slowest:.0f} rpm and {rpm}" if others
+            else f"viscosity field of the operating point at {rpm}, frozen"
+        )  # fmt: skip
     if solution.problem.rupture.conserves_mass:
         notes.append(
             "liquid fraction as in a steady state: oil stored in the ruptured film left out"
         )
     if solution.problem.mesh.slot.any():
         notes.append(f"p = 0 held where the film is thickest at {rpm}")
-    force = SolvedFilmForce.of(solution)
+    force = SolvedFilmForce.of(solution, others)
     return LoadedFilm(force, load, force.bearing, "; ".join(notes))
+
+
+def other_films(case: Case, load: float, speeds: Sequence[float]) -> list[FilmSolution]:
+    """Films under the same load [N] at other speeds [rad/s]; those that cannot be solved lack."""
+    found = []
+    for speed in speeds:
+        with suppress(InputError):
+            found.append(operating_film(replace(case, target=LoadTarget(load)), float(speed)))
+    return found
+
+
+def field_speeds(speeds: Sequence[float]) -> list[float]:
+    """Speeds [rad/s] below the highest at which heated films of a run are solved."""
+    low, high = max(min(speeds), _SLOWEST_FIELD * max(speeds)), max(speeds)
+    if low > (1.0 - 1e-6) * high:
+        return []
+    return np.linspace(low, high, _FIELD_SPEEDS)[:-1].tolist()
 
 
 def _check_inertia(bearing: Bearing) -> None:

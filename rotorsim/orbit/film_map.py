@@ -34,7 +34,7 @@ from ..atomic import replacing
 from ..errors import InputError
 from ..film.geometry import film_geometry
 from ..film.layers import isoviscous_layers
-from ..film.operator import face_topology
+from ..film.operator import NORTH, SOUTH, face_topology
 from ..film.problem import FilmProblem, film_problem, film_state
 from ..model import (
     Bearing,
@@ -49,12 +49,12 @@ from ..model import (
     ThermalModel,
     ThermalSettings,
 )
-from .force_map import ForceMap
+from .force_map import FilmMapForce, ForceMap
 
 Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
-MAPPED = (Cavitation.REYNOLDS, Cavitation.HALF_SOMMERFELD)
+MAPPED = (Cavitation.REYNOLDS, Cavitation.HALF_SOMMERFELD, Cavitation.FULL_SOMMERFELD)
 """Rupture conditions that are homogeneous of first degree in pressure and know no history."""
 _ROWS, _COLUMNS, _MAX_ECCENTRICITY_RATIO = 44, 112, 0.9995
 _MESH, _THIN_MESH = (256, 24), (192, 36)
@@ -69,36 +69,35 @@ def film_force_map(
     length_to_diameter: float,
     cavitation: Cavitation | str = Cavitation.REYNOLDS,
     *,
+    leakage: float | None = None,
     cache: Path | None = None,
     progress: Progress | None = None,
 ) -> ForceMap:
     """Map of a plain bearing's film; read from the cache where it has been solved before.
 
-    Parameters
-    ----------
-    length_to_diameter : float
-        L/D [-]; maps are kept for L/D rounded to six digits.
-    cavitation : Cavitation
-        ``reynolds`` or ``half_sommerfeld``.
-    cache : Path, optional
-        Folder of the kept maps. Default: `cache_folder()`.
-    progress : callable, optional
-        Called with rows done and rows in all while the map is solved (some ten seconds).
+    length_to_diameter : L/D [-]; maps are kept for L/D rounded to six digits.
+    cavitation : ``reynolds``, ``half_sommerfeld`` or ``full_sommerfeld``.
+    leakage : Of seals at the ends: their conductance for each length of the rim, times 12 mu L/c^3
+        [-]. Default: open ends.
+    cache : Folder of the kept maps. Default: `cache_folder()`.
+    progress : Called with rows done and rows in all while the map is solved (some ten seconds).
 
-    Raises
-    ------
-    InputError
-        A rupture condition that no map can hold.
+    Raises InputError: A rupture condition that no map can hold.
     """
     kind = Cavitation(cavitation)
     if kind not in MAPPED:
         raise InputError(
-            'no map holds this film; it needs "reynolds" or "half_sommerfeld"',
+            f"no map holds this film; it needs {', '.join(MAPPED)}",
             key="film.cavitation",
             value=kind.value,
         )
     ratio = float(f"{length_to_diameter:.6g}")
-    return _kept_map(ratio, kind, cache or cache_folder(), progress)
+    if leakage is not None and not 1e-6 < leakage < 1e6:
+        raise InputError(
+            "the end seals' conductance is out of range", key="end_seal", value=leakage
+        )
+    film = SqueezeFilm(ratio, kind, leakage=leakage)
+    return _kept_map(film, cache or cache_folder(), progress)
 
 
 def cache_folder() -> Path:
@@ -115,11 +114,13 @@ def cache_folder() -> Path:
     return Path(base) / "rotorsim"
 
 
-def map_path(length_to_diameter: float, cavitation: Cavitation, folder: Path) -> Path:
+def map_path(
+    length_to_diameter: float, cavitation: Cavitation, folder: Path, leakage: float | None = None
+) -> Path:
     """File of one map; its name holds everything that the numbers depend on."""
     settings = (
         sources_digest(), length_to_diameter, cavitation.value, _ROWS, _COLUMNS,
-        _MAX_ECCENTRICITY_RATIO, _MESH, _THIN_MESH, _THIN, _CROWDING,
+        _MAX_ECCENTRICITY_RATIO, _MESH, _THIN_MESH, _THIN, _CROWDING, leakage,
     )  # fmt: skip
     key = hashlib.sha256(repr(settings).encode()).hexdigest()[:12]
     return folder / f"force_map_{cavitation.value}_{length_to_diameter:g}_{key}.npz"
@@ -142,10 +143,8 @@ _in_memory: dict[Path, tuple[int, ForceMap]] = {}
 """Maps of this process with the time at which their file was written."""
 
 
-def _kept_map(
-    ratio: float, cavitation: Cavitation, folder: Path, progress: Progress | None
-) -> ForceMap:
-    path = map_path(ratio, cavitation, folder)
+def _kept_map(film: SqueezeFilm, folder: Path, progress: Progress | None) -> ForceMap:
+    path = map_path(film.length_to_diameter, film.cavitation, folder, film.leakage)
     written = _written(path)
     if written is not None:
         held = _in_memory.get(path)
@@ -154,7 +153,7 @@ def _kept_map(
             _in_memory[path] = written, found
             return found
     made = ForceMap.build(
-        SqueezeFilm(ratio, cavitation).impedance,
+        film.impedance,
         max_eccentricity_ratio=_MAX_ECCENTRICITY_RATIO,
         rows=_ROWS,
         columns=_COLUMNS,
@@ -220,17 +219,14 @@ def read_map(path: Path) -> ForceMap | None:
 class SqueezeFilm:
     """Impedance of the finite film from the film solver, extrapolated from two meshes.
 
-    Parameters
-    ----------
-    length_to_diameter : float
-    cavitation : Cavitation
-    mesh : (int, int), optional
-        Cells around and along; default: as fine as the maps need.
+    mesh : (int, int), optional. Cells around and along; default: as fine as the maps need.
+    leakage : See `film_force_map`.
     """
 
     length_to_diameter: float
     cavitation: Cavitation
     mesh: tuple[int, int] | None = None
+    leakage: float | None = None
     _films: tuple[_RestingFilm, ...] = field(default=(), init=False, repr=False)
 
     def impedance(self, eccentricity_ratio: float, angle: float) -> tuple[float, float]:
@@ -249,12 +245,14 @@ class SqueezeFilm:
 class _RestingFilm:
     """One mesh at one eccentricity; each call starts from the full cells of the one before."""
 
-    def __init__(self, case: Case, eccentricity_ratio: float) -> None:
+    def __init__(self, case: Case, eccentricity_ratio: float, leakage: float | None) -> None:
         self.eccentricity_ratio = eccentricity_ratio
         self.position = (eccentricity_ratio * _CLEARANCE, 0.0)
         self.problem = film_problem(case, 0.0, case.bearing, self.position)
         if eccentricity_ratio > _THIN:
             self.problem = _crowded(self.problem)
+        if leakage is not None:
+            self.problem = _sealed(self.problem, self.position, leakage)
         self.layers = isoviscous_layers(self.problem.mesh.shape, 1.0)
         # F = 2 mu |v_s| L (R/c)^3 W with mu = |v_s| = R = 1
         self.scale = 2.0 * case.bearing.length / _CLEARANCE**3
@@ -271,7 +269,7 @@ class _RestingFilm:
             thermal=ThermalSettings(model=ThermalModel.ISOTHERMAL),
             target=EccentricityTarget(0.5),
         )
-        return cls(case, eccentricity_ratio)
+        return cls(case, eccentricity_ratio, film.leakage)
 
     def impedance(self, angle: float) -> Array:
         velocity = (math.cos(angle), math.sin(angle))
@@ -280,6 +278,47 @@ class _RestingFilm:
         )
         self.full = state.solution.full
         return state.force / self.scale
+
+
+def squeezed_film(
+    force: FilmMapForce, x: float, y: float, vx: float, vy: float
+) -> tuple[Array, Array, Array] | None:
+    """Angles (n,) [rad], places along (m,) [m] and pressure (n, m) [Pa] of a mapped film.
+
+    x, y, vx, vy : Position and squeeze velocity of the journal [m, m/s].
+
+    On a coarse mesh with open ends, for pictures; None where the film cannot be solved.
+    """
+    eccentricity = min(math.hypot(x, y) / force.radial_clearance, 0.99)
+    angle = math.atan2(y, x)
+    ratio = 0.5 * force.length / force.radius
+    film = _RestingFilm.of(SqueezeFilm(ratio, Cavitation.REYNOLDS), eccentricity, (96, 16))
+    cos, sin = math.cos(angle), math.sin(angle)
+    try:
+        state = film_state(
+            film.problem, film.position, film.layers,
+            velocity=(vx * cos + vy * sin, vy * cos - vx * sin),
+        )  # fmt: skip
+    except ArithmeticError:
+        return None
+    mesh = film.problem.mesh
+    scale = force.viscosity * (force.radius**2 / force.radial_clearance**3) * _CLEARANCE**3
+    pressure = mesh.whole(state.solution.pressure) * scale
+    return mesh.theta + angle, mesh.whole_y * force.radius, pressure
+
+
+def _sealed(problem: FilmProblem, position: tuple[float, float], leakage: float) -> FilmProblem:
+    """Film with seals at its ends: in series with the last half cells, as a length more.
+
+    A length s of film lets h^3/(12 mu s) pass, the seal leakage c^3/(12 mu L).
+    """
+    height = problem.geometry.thickness(np.array(position))[1 + NORTH, :, -1]
+    bearing, spacing = problem.bearing, problem.topology.spacing.copy()
+    longer = (height / bearing.radial_clearance) ** 3 * bearing.length / leakage
+    spacing[NORTH, :, -1] += longer
+    if not problem.mesh.half:
+        spacing[SOUTH, :, 0] += longer
+    return replace(problem, topology=replace(problem.topology, spacing=spacing))
 
 
 def _crowded(problem: FilmProblem) -> FilmProblem:

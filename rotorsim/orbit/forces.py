@@ -79,18 +79,13 @@ class CompilableForce(BearingForce, Protocol):
 class LinearForce:
     """Static force - K (q - q0) - C v, with K, C and q0 looked up by speed (Dal Eq. 21).
 
-    Parameters
-    ----------
-    coefficients : callable
-        speed [rad/s] -> (K, C), two (2, 2) arrays [N/m, N s/m]. It may raise outside its range.
-    radial_clearance : float
-        [m]
-    equilibrium : (float, float) or callable
-        The journal's static position (x0, y0) [m], or speed -> position.
-    static_force : (float, float)
-        The film's force at equilibrium [N]. Zero leaves the static load out on both sides; with
-        (-W, 0) give the problem the static load (W, 0).
-    name : str
+    coefficients : speed [rad/s] -> (K, C), two (2, 2) arrays [N/m, N s/m]. It may raise outside its
+        range.
+    radial_clearance : [m]
+    equilibrium : (float, float) or callable. The journal's static position (x0, y0) [m], or speed
+        -> position.
+    static_force : (float, float). The film's force at equilibrium [N]. Zero leaves the static load
+        out on both sides; with (-W, 0) give the problem the static load (W, 0).
 
     Notes
     -----
@@ -154,14 +149,11 @@ def squeeze_force_scale(viscosity: float, length: float, radius: float, clearanc
 
 @dataclass(frozen=True)
 class ShortBearingForce:
-    """Ocvirk's ruptured short film in closed form, at any position and velocity.
+    """Ocvirk's short film in closed form, at any position and velocity.
 
-    Parameters
-    ----------
-    viscosity : float
-        [Pa s]
-    length, radius, radial_clearance : float
-        [m]
+    viscosity : [Pa s]
+    length, radius, radial_clearance : [m]
+    ruptured : Whether the pressure stays above zero, or has either sign.
     """
 
     viscosity: float
@@ -169,16 +161,51 @@ class ShortBearingForce:
     radius: float
     radial_clearance: float
     name: str = "short_bearing"
+    ruptured: bool = True
 
     def compiled(self, lowest_speed: float = 0.0, highest_speed: float = 0.0) -> CompiledForce:
         """Compiled form; good at any speed."""
         del lowest_speed, highest_speed
         scale = squeeze_force_scale(self.viscosity, self.length, self.radius, self.radial_clearance)
         numbers = np.array([self.radial_clearance, scale, self.length / (2.0 * self.radius)])
-        return CompiledForce(kernels.SHORT_BEARING, numbers, np.zeros((1, 1, 1)))
+        kind = kernels.SHORT_BEARING if self.ruptured else kernels.SHORT_FULL
+        return CompiledForce(kind, numbers, np.zeros((1, 1, 1)))
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
         """Film force [N]."""
+        return self.compiled().evaluate(x, y, vx, vy, speed)
+
+
+@dataclass(frozen=True)
+class StopForce:
+    """A stop around the shaft: linear contact, and dry friction.
+
+    radial_clearance : [m]
+    stiffness, damping : Of the contact [N/m, N s/m].
+    friction : Coefficient [-].
+    radius : Of the shaft [m].
+    slip : Sliding velocity below which the friction fades [m/s].
+    """
+
+    radial_clearance: float
+    stiffness: float
+    damping: float
+    friction: float
+    radius: float
+    slip: float
+    name: str = "stop"
+
+    def compiled(self, lowest_speed: float = 0.0, highest_speed: float = 0.0) -> CompiledForce:
+        """Compiled form; good at any speed."""
+        del lowest_speed, highest_speed
+        numbers = np.array(
+            [self.radial_clearance, self.stiffness, self.damping, self.friction, self.radius,
+             self.slip]
+        )  # fmt: skip
+        return CompiledForce(kernels.STOP, numbers, np.zeros((1, 1, 1)))
+
+    def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
+        """Force on the shaft [N]; `speed` is the shaft's."""
         return self.compiled().evaluate(x, y, vx, vy, speed)
 
 
@@ -200,10 +227,7 @@ def find_equilibrium(
 ) -> tuple[float, float]:
     """Position (x, y) [m] where the film carries the static load [N] at a speed [rad/s].
 
-    Raises
-    ------
-    InputError
-        No position within the clearance carries the load.
+    Raises InputError: No position within the clearance carries the load.
 
     Notes
     -----
@@ -244,10 +268,7 @@ def linearize_force(
 ) -> tuple[Array, Array]:
     """K [N/m] and C [N s/m] by fourth-order central differences at a position at rest.
 
-    Parameters
-    ----------
-    step : float
-        Over the clearance (and over clearance times speed).
+    step : Over the clearance (and over clearance times speed).
     """
     clearance = force.radial_clearance
 

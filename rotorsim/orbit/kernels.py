@@ -24,7 +24,7 @@ from ..compiled import compiled
 
 Array = NDArray[np.float64]
 
-LINEAR, SHORT_BEARING, FORCE_MAP = 0, 1, 2
+LINEAR, SHORT_BEARING, FORCE_MAP, SHORT_FULL, STOP = 0, 1, 2, 3, 4
 """Force models the kernel knows."""
 
 
@@ -195,10 +195,36 @@ def _squeeze_force(
     angle = math.atan2(nx * sy - ny * sx, nx * sx + ny * sy)
     if kind == SHORT_BEARING:
         radial, tangential = short_bearing_impedance(eps, angle, numbers[2])
+    elif kind == SHORT_FULL:
+        # pressure of either sign all round: Ocvirk's film without rupture
+        open_ = 1.0 - eps * eps
+        factor = -2.0 * math.pi * numbers[2] * numbers[2] / open_**1.5
+        radial = factor * (1.0 + 2.0 * eps * eps) / open_ * math.cos(angle)
+        tangential = factor * math.sin(angle)
     else:
         radial, tangential = map_impedance(eps, angle, numbers[2:], table)
     scale = numbers[1] * squeeze
     return scale * (radial * nx - tangential * ny), scale * (radial * ny + tangential * nx)
+
+
+@compiled()
+def _stop_force(
+    x: float, y: float, vx: float, vy: float, speed: float, numbers: Array
+) -> tuple[float, float]:
+    """Push the shaft back from a stop that it touches, and rub it.
+
+    numbers: clearance [m], stiffness [N/m], damping [N s/m], friction coefficient [-], radius of
+    the shaft [m], slip velocity below which the friction fades [m/s].
+    """
+    reach = math.hypot(x, y)
+    if reach <= numbers[0]:
+        return 0.0, 0.0
+    nx, ny = x / reach, y / reach
+    push = numbers[1] * (reach - numbers[0]) + numbers[2] * (vx * nx + vy * ny)
+    push = max(push, 0.0)  # it does not stick
+    slip = vy * nx - vx * ny + speed * numbers[4]
+    rub = numbers[3] * push * math.tanh(slip / numbers[5])
+    return -push * nx + rub * ny, -push * ny - rub * nx
 
 
 @compiled()
@@ -215,6 +241,8 @@ def film_force(
     """Film force on the journal [N]."""
     if kind == LINEAR:
         return _linear_force(x, y, vx, vy, speed, numbers, table)
+    if kind == STOP:
+        return _stop_force(x, y, vx, vy, speed, numbers)
     return _squeeze_force(kind, x, y, vx, vy, speed, numbers, table)
 
 
@@ -226,3 +254,13 @@ def film_force_series(kind: int, motion: Array, numbers: Array, table: Array) ->
         m = motion[i]
         out[i] = film_force(kind, m[0], m[1], m[2], m[3], m[4], numbers, table)
     return out
+
+
+@compiled()
+def shaft(t: float, knots: Array) -> tuple[float, float, float]:
+    """Angle, speed and acceleration of the shaft; knots: time, speed, angle, acceleration."""
+    i = knots.shape[0] - 2
+    while i > 0 and t < knots[i, 0]:
+        i -= 1
+    since, w, a = t - knots[i, 0], knots[i, 1], knots[i, 3]
+    return knots[i, 2] + since * (w + 0.5 * a * since), w + a * since, a

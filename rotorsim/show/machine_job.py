@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,12 +10,20 @@ import numpy as np
 
 from ..machine.critical_map import critical_speed_map, principal_stiffness
 from ..machine.peaks import node_at
+from ..orbit.motion import Motion
+from ..rows import RPM, number
 from ..study.lateral import LateralStudy
 from ..study.machine import MachineResult
+from ..study.machine_motion import films_in_motion, labelled, motion_document
+from ..text import markdown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from ..files.machine import MachineFile
+
+_STATION_SAMPLES = 20_000
+"""Of each orbit in a recording."""
 _STIFFNESS = np.geomspace(1e5, 1e10, 61)
 """Of the undamped critical speed map [N/m]."""
 
@@ -66,3 +74,67 @@ def machine_figures(
         own = principal_stiffness(last.machine, last.known)
         map_figure = draw.critical_speed_chart(chart, own, last.known, continuous, title)
         yield "critical_speed_map", map_figure
+
+
+def write_motion(
+    machine: MachineFile,
+    motion: Motion,
+    recording: Path,
+    folder: Path | None = None,
+    animations: Sequence[str] = (),
+    steady: bool = False,
+    result: MachineResult | None = None,
+) -> list[Path]:
+    """Record a machine's motion; write figures and animations where a folder is given.
+
+    result : Its linear analysis, for the natural frequencies over speed.
+
+    Returns
+    -------
+    list of Path
+        The recording first.
+    """
+    from .figures.machine import machine_campbell
+    from .figures.orbits import animate_machine
+    from .job import orbit_figures, save_figures
+    from .recording import RecordingContents, write_recording
+
+    count = max(1, motion.t.size // _STATION_SAMPLES)
+    per_turn = motion.problem.samples_per_revolution
+    # whole parts of a turn stay whole
+    step = next(k for k in range(count, per_turn + count) if per_turn % k == 0 or k > per_turn)
+    whole = [labelled(motion, one.name) for one in motion.stations]
+    orbits = [one.part(0, None, step) if step > 1 else one for one in whole]
+    campbell = None
+    if result is not None and result.modes is not None and result.known.size > 1:
+        campbell = machine_campbell(result.modes, result.critical_speeds)
+    contents = RecordingContents(
+        title=machine.title, summary=_motion_summary(motion), kind=motion.problem.kind,
+        orbits=tuple(orbits), films=tuple(films_in_motion(motion)), machine=(machine, motion),
+        campbell=campbell,
+    )  # fmt: skip
+    files = [write_recording(recording, contents)]
+    if folder is not None:
+        files += save_figures(orbit_figures(whole[:4], machine.title, steady), folder, ("png",))
+    for suffix in animations:
+        assert folder is not None
+        target = folder / f"motion{suffix}"
+        rotor = machine.rotor_with_unbalance()
+        files.append(animate_machine(motion, rotor, target, machine.title, steady))
+    return files
+
+
+def _motion_summary(motion: Motion) -> str:
+    """Outcome in Markdown."""
+    document = motion_document(motion)
+    lines = [
+        f"{document['kind'].replace('_', ' ')}, {document['speed'][0] * RPM:.0f} to "
+        f"{document['speed'][1] * RPM:.0f} rpm, {document['revolutions']:.0f} turns, "
+        f"{document['note']}.", "", "| station | amplitude µm | outcome |", "| --- | --- | --- |",
+    ]  # fmt: skip
+    lines += [
+        f"| {markdown(row['station'])} | {number(row['amplitude'] * 1e6)} | "
+        f"{row['status'].replace('_', ' ')} |"
+        for row in document["stations"]
+    ]
+    return "\n".join(lines)

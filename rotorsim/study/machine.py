@@ -44,6 +44,7 @@ from ..model import Case, LoadTarget, ThermalModel
 from ..model.machine import Matrix, SealEntry, SupportEntry
 from ..rotor import Rotor
 from .planes import changed
+from .rings import centred_damping, ring_law, ring_support
 from .sweep import Progress, sweep_points
 
 Array = NDArray[np.float64]
@@ -312,7 +313,7 @@ class MachineAnalysis:
             )
         ]
         mounts += [
-            Mount(node, _seal(entry, self.description, name), name)
+            Mount(node, seal_support(entry, self.description, name), name)
             for node, entry, name in zip(
                 self.seal_nodes, self.description.seal, self.description.seal_names, strict=True
             )
@@ -343,7 +344,8 @@ class MachineAnalysis:
         """Static loads (n_speed, n_supports, 2), the films' points, and the equilibria."""
         description, count = self.description, len(self.nodes)
         loads = np.full((self.speeds.size, count, 2), np.nan)
-        if not (description.bearings or any(e.coefficients for e in description.support)):
+        placed = any(entry.coefficients or entry.ring for entry in description.support)
+        if not (description.bearings or placed):
             return loads, {}, []
         if count == 2:
             return self._determinate()
@@ -486,6 +488,8 @@ class MachineAnalysis:
     def _spring(self, i: int, speed: float) -> Law:
         """Law of a support that is no film: a spring at the static load."""
         entry = self.description.support[i]
+        if entry.ring is not None:
+            return ring_law(entry.ring, speed)
         if entry.stiffness is not None:
             own = np.array(entry.stiffness)
         else:
@@ -510,15 +514,31 @@ class MachineAnalysis:
             direction = state.direction[0] if np.all(np.isfinite(state.load)) else 0.0
             table = TableSupport(self.description.tables[state.name].interpolator())
             support = Turned(table, float(direction) + entry.angle)
+        elif entry.ring is not None:
+            support = ring_support(entry.ring, self.speeds, state.load)
         else:
-            support = ConstantSupport(
-                _matrix(entry.stiffness), _matrix(entry.damping), _matrix(entry.mass)
-            )
-            support = Turned(support, entry.angle) if entry.angle else support
-        if entry.pedestal is not None:
-            stand = entry.pedestal
-            support = Pedestal(support, stand.mass, stand.stiffness, stand.damping)
-        return support
+            return fixed_support(entry)
+        return _on_its_stand(entry, support)
+
+
+def fixed_support(entry: SupportEntry) -> Support:
+    """Support of constant stiffness in the machine's frame, pedestal or damper included."""
+    support: Support = ConstantSupport(
+        _matrix(entry.stiffness), _matrix(entry.damping), _matrix(entry.mass)
+    )
+    return _on_its_stand(entry, Turned(support, entry.angle) if entry.angle else support)
+
+
+def _on_its_stand(entry: SupportEntry, support: Support) -> Support:
+    """Put a bearing in its pedestal, or in its damper: small motions about the centre."""
+    if entry.pedestal is not None:
+        stand = entry.pedestal
+        return Pedestal(support, stand.mass, stand.stiffness, stand.damping)
+    if entry.damper is not None:
+        damper = entry.damper
+        damping = centred_damping(damper) * np.eye(2) + _matrix(damper.damping)
+        return Pedestal(support, damper.mass, _matrix(damper.stiffness), damping)
+    return support
 
 
 def points_with_fields(
@@ -615,7 +635,8 @@ def film_support(speeds: Array, state: SupportState, full: bool = True) -> Suppo
     return TableSupport(CoefficientInterpolator.from_columns(speeds, converged, columns))
 
 
-def _seal(entry: SealEntry, description: MachineFile, name: str) -> Support:
+def seal_support(entry: SealEntry, description: MachineFile, name: str) -> Support:
+    """Make the support of a seal from its entry."""
     if entry.coefficients is not None:
         return TableSupport(description.tables[name].interpolator(), carries_load=False)
     return ConstantSupport(

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 
 
 @lru_cache(maxsize=8)
-def _results(machine: MachineFile) -> dict[str, MachineResult]:
+def machine_results(machine: MachineFile) -> dict[str, MachineResult]:
+    """Results of a machine file by thermal model, solved once."""
     return analyse_machine(machine)
 
 
@@ -47,7 +48,7 @@ def assembled(machine: MachineFile | Machine, thermal_model: str | None = None) 
             "must be a machine: rotorsim.load_machine(file) reads one", key="machine",
             value=machine if isinstance(machine, str) else type(machine).__name__,
         )  # fmt: skip
-    results = _results(machine)
+    results = machine_results(machine)
     name = next(reversed(results)) if thermal_model is None else thermal_model
     if name not in results:
         raise InputError(

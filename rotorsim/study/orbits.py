@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -132,7 +132,7 @@ def _orbit_problem(
         note = "" if placed else _UNPLACED
     else:
         model = thermal_model or _preferred_scenario_model(scenario)
-        film, placed = _nonlinear_film(scenario, model, max(schedule.speeds)), True
+        film, placed = _nonlinear_film(scenario, model, schedule.speeds), True
         force, bearing, load, note = film.force, film.bearing, film.load, film.note
         carried = load
     problem = OrbitProblem(
@@ -184,16 +184,16 @@ def _linear_force(
     return force, bearing.turned(-scenario.load_direction)
 
 
-def _nonlinear_film(scenario: Scenario, model: str, speed: float) -> LoadedFilm:
-    """Nonlinear film of the orbit's bearing, its operating point at `speed` [rad/s].
+def _nonlinear_film(scenario: Scenario, model: str, speeds: Sequence[float]) -> LoadedFilm:
+    """Nonlinear film of the orbit's bearing between speeds, its operating point at the highest.
 
     With an eccentricity ratio in place of a load, the load is that which gives it at this speed.
     """
-    from ..orbit.film_force import loaded_film
+    from ..orbit.film_force import field_speeds, loaded_film
 
     case = scenario.case(orbit_settings(scenario)[0].radial_clearance, model)
     try:
-        return loaded_film(case, speed)
+        return loaded_film(case, max(speeds), other_speeds=field_speeds(speeds))
     except InputError as error:
         raise InputError(
             error.message, source=scenario.source, key=error.key, value=error.value
@@ -370,18 +370,22 @@ def film_at_rest(point: OperatingPoint, bearing: Bearing) -> FilmFrame:
 def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
     """Film along an orbit on the nonlinear film, ascending in time.
 
-    Pressure is solved for the journal's position and velocity; the temperature is that of the
-    operating point, as in the simulation. Moments at which no film is found are left out.
+    Pressure is solved for the journal's position and velocity; the temperature lies between those
+    of operating points, as in the simulation. Moments at which no film is found are left out.
     """
     from ..film.geometry import pad_unknowns
-    from ..orbit.film_force import SolvedFilmForce, operating_film
+    from ..orbit.film_force import SolvedFilmForce, field_speeds, operating_film, other_films
 
     case = _shown_case(
         scenario.case(orbit_settings(scenario)[0].radial_clearance, orbit.thermal_model)
     )
-    solution = operating_film(case, float(np.abs(orbit.speed).max()))
-    force, mesh = SolvedFilmForce.of(solution), solution.problem.mesh
-    temperature, hottest = _temperature(solution)
+    top = float(np.abs(orbit.speed).max())
+    solution, others = operating_film(case, top), []
+    if solution.thermal is not None:
+        load = float(np.hypot(*solution.state.force[:2]))
+        others = other_films(case, load, field_speeds([float(np.abs(orbit.speed).min()), top]))
+    force, mesh = SolvedFilmForce.of(solution, others), solution.problem.mesh
+    fields = _temperatures(solution, others)
     places, rates = orbit.film_motion
     unknowns = pad_unknowns(case.bearing)[1]
     frames = []
@@ -397,8 +401,8 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
                 theta=mesh.theta + solution.frame,
                 y=mesh.whole_y,
                 pressure=mesh.whole(state.solution.pressure),
-                temperature=temperature,
-                max_temperature=hottest,
+                temperature=None if fields is None else fields(float(orbit.speed[row]))[0],
+                max_temperature=None if fields is None else fields(float(orbit.speed[row]))[1],
                 journal_radius=case.bearing.journal_radius,
                 radial_clearance=force.radial_clearance,
                 centre=np.array([orbit.x[row], orbit.y[row]]),
@@ -436,9 +440,29 @@ def _shown_case(case: Case) -> Case:
     return replace(case, film=replace(case.film, mesh=shown))
 
 
-def _temperature(solution: FilmSolution) -> tuple[Array | None, float | None]:
-    """Mean across the film over the whole bearing, and the hottest place [K]."""
+def _temperatures(
+    solution: FilmSolution, others: Sequence[FilmSolution]
+) -> Callable[[float], tuple[Array, float]] | None:
+    """Speed [rad/s] to the mean across the film and the hottest place [K]."""
+    from ..orbit.film_force import field_on
+
     if solution.thermal is None:
-        return None, None
-    field = solution.thermal.heat.temperature
-    return solution.problem.mesh.whole(field.mean(axis=2)), float(field.max())
+        return None
+    films = sorted([*others, solution], key=lambda one: one.problem.speed)
+    speeds = np.array([one.problem.speed for one in films])
+    heats = [one.thermal.heat.temperature for one in films if one.thermal is not None]
+    means = [
+        solution.problem.mesh.whole(field_on(solution, one, heat.mean(axis=2)))
+        for one, heat in zip(films, heats, strict=True)
+    ]
+    peaks = np.array([float(heat.max()) for heat in heats])
+
+    def at(speed: float) -> tuple[Array, float]:
+        i = int(np.clip(np.searchsorted(speeds, speed), 1, max(len(films) - 1, 1)))
+        low, high = (i - 1, i) if len(films) > 1 else (0, 0)
+        span = float(speeds[high] - speeds[low])
+        share = min(max((speed - float(speeds[low])) / span, 0.0), 1.0) if span else 0.0
+        hottest = float((1.0 - share) * peaks[low] + share * peaks[high])
+        return (1.0 - share) * means[low] + share * means[high], hottest
+
+    return at

@@ -25,7 +25,7 @@ from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import modes
 from rotorsim.machine.peaks import Peak, _find_peaks, node_at, probe_responses, response_speeds
 from rotorsim.machine.response import unbalance_response
-from rotorsim.machine.statics import _reactions_by_statics, weight
+from rotorsim.machine.statics import reactions_by_statics, weight
 from rotorsim.machine.support import ConstantSupport, Pedestal
 from rotorsim.model.machine import Clearance, Probe
 from rotorsim.model.shaft import Disc, Section
@@ -232,7 +232,7 @@ def test_unbalance_is_placed_to_excite_each_mode():
     rotor = beam_rotor(beam, [0.1, 1.3])
     nodes = [node_at(rotor, z) for z in (0.1, 1.3)]
     machine = Machine(rotor, [(node, ConstantSupport(5e7, 2e3)) for node in nodes])
-    loads = _reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
+    loads = reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
     assert loads.sum() == pytest.approx(rotor.total_mass * STANDARD_GRAVITY)
     found = modes(machine, np.linspace(10.0, 2500.0, 40))
     static = dict(zip(nodes, loads, strict=True))
@@ -260,7 +260,7 @@ def test_an_overhung_mode_takes_the_overhung_mass():
     rotor = beam_rotor(beam, [0.1, 0.7])
     nodes = [node_at(rotor, z) for z in (0.1, 0.7)]
     machine = Machine(rotor, [(node, ConstantSupport(1e9, 2e3)) for node in nodes])
-    loads = _reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
+    loads = reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
     assert loads[0] < 0.0
     found = modes(machine, np.linspace(10.0, 1000.0, 30))
     case = unbalance_cases(machine, found, dict(zip(nodes, loads, strict=True)), 500.0, 1.0)[0]

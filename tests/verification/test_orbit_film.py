@@ -25,7 +25,13 @@ from rotorsim.orbit import (
     steady_part,
 )
 from rotorsim.orbit.analysis import growth_rate
-from rotorsim.orbit.film_force import LoadedFilm, SolvedFilmForce, can_be_mapped, loaded_film
+from rotorsim.orbit.film_force import (
+    LoadedFilm,
+    SolvedFilmForce,
+    can_be_mapped,
+    loaded_film,
+    operating_film,
+)
 from rotorsim.orbit.forces import find_equilibrium, linearize_force
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.rotor import Rotor
@@ -325,3 +331,29 @@ def test_force_has_no_jumps():
     along = np.array([force.force(*row, speed) for row in motion])
     steps = np.hypot(*np.diff(along, axis=0).T)
     assert steps.max() < 0.02 * np.hypot(*np.ptp(along, axis=0))
+
+
+def test_a_heated_film_has_the_viscosity_of_the_moments_speed():
+    film = thermal_case(LoadTarget(10e3), mesh=(64, 16, 12), inception="free")
+    low, high = 0.3 * SPEED, SPEED
+    known = loaded_film(film, high, other_speeds=[low])
+    assert "viscosity field of the moment" in known.note
+    frozen = loaded_film(film, high).force
+    slow = operating_film(replace(film, target=LoadTarget(known.load)), low)
+    own = SolvedFilmForce.of(film, slow)
+    x, y = find_equilibrium(own, (known.load, 0.0), low)
+    exact = np.array(own.force(x, y, 0.0, 0.0, low))
+    moment = np.array(known.force.force(x, y, 0.0, 0.0, low))
+    before = np.array(frozen.force(x, y, 0.0, 0.0, low))
+    # laid on another mesh the field is as good as the mesh
+    assert np.abs(moment - exact).max() < 0.02 * known.load
+    assert np.abs(before - exact).max() > 5.0 * np.abs(moment - exact).max()
+    # at the top speed nothing changes, and between the two the force does not jump
+    place = 0.3 * film.bearing.radial_clearance
+    assert known.force.force(place, place, 0.0, 0.0, high) == pytest.approx(
+        frozen.force(place, place, 0.0, 0.0, high), rel=1e-12
+    )
+    along = np.array(
+        [known.force.force(place, place, 0.0, 0.0, w)[0] / w for w in np.linspace(low, high, 41)]
+    )
+    assert np.abs(np.diff(along, 2)).max() < 0.02 * np.ptp(along)

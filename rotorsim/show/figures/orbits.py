@@ -19,8 +19,11 @@ from ...atomic import replacing
 from ...errors import InputError
 from ...orbit import Orbit
 from ...orbit.analysis import once_per_turn, recognise, steady_spectrum
+from ...orbit.continuation import Branch
 from ...orbit.description import run_names, run_title
+from ...orbit.motion import Motion
 from ...orbit.spectrum import Cascade
+from ...rotor import Rotor
 from ...rows import QUANTITIES
 from ...text import caption
 from .style import (
@@ -196,6 +199,34 @@ def _model(name: str) -> str:
     return next((model for model in MODEL_STYLES if name.startswith(model)), name)
 
 
+def branch_plot(branch: Branch, title: str = "", ax: Axes | None = None) -> Figure:
+    """Amplitude of periodic motions over speed, the unstable ones dashed, threshold and folds."""
+    ax = axes_or_new(ax, (6.4, 4.4))
+    rpm = branch.speed * RPM
+    for column, name in enumerate(branch.names):
+        amplitude = branch.amplitude[:, column] * MICRO
+        colour = f"C{column}"
+        for word, shown, style in (
+            ("stable", branch.stable, "-"), ("unstable", ~branch.stable, "--")
+        ):  # fmt: skip
+            # to the next point as well, so that a change of stability leaves no gap
+            line = np.where(shown | np.roll(shown, 1), amplitude, np.nan)
+            if shown.any():
+                ax.plot(rpm, line, style, color=colour, label=f"{name}, {word}")
+    if branch.threshold is not None:
+        ax.axvline(branch.threshold * RPM, color="#999999", lw=0.8)
+        ax.annotate(
+            "threshold", (branch.threshold * RPM, 0.02), xycoords=("data", "axes fraction"),
+            rotation=90, fontsize=8, ha="right",
+        )  # fmt: skip
+    for fold in branch.folds:
+        ax.axvline(fold * RPM, color="#D55E00", lw=0.8, ls=":")
+    ax.set(xlabel="shaft speed [rpm]", ylabel="amplitude [µm]", title=caption(title))
+    ax.set_ylim(bottom=0.0)
+    ax.legend(fontsize=8)
+    return figure_of(ax)
+
+
 _FRAMES_PER_SECOND = 12
 _RUN_FRAMES = 50
 """Of the first act, the whole run."""
@@ -238,6 +269,69 @@ def animate_orbits(
                 for scene in scenes:
                     scene.show(frame, slow_only)
                 writer.grab_frame()
+    return target
+
+
+def animate_machine(
+    motion: Motion, rotor: Rotor, path: str | Path, title: str = "", slow_only: bool = False
+) -> Path:
+    """Write a machine's shaft, whirling in space, as ``.gif`` or ``.mp4``.
+
+    Acts as in `animate_orbits`; displacements are magnified to a tenth of the shaft's length.
+    """
+    target = Path(path)
+    writer = _writer(target)
+    z = np.array([node.position for node in rotor.nodes]) * 1e3
+    turns = motion.revolutions
+    wanted = np.linspace(
+        max(float(turns[-1]) - _SLOW_FRAMES / _SLOW_FRAMES_PER_REVOLUTION, 0.0), float(turns[-1]),
+        _SLOW_FRAMES,
+    )  # fmt: skip
+    frames = np.clip(np.searchsorted(turns, wanted), 0, turns.size - 1)
+    if not slow_only:
+        whole = np.linspace(0, turns.size - 1, _RUN_FRAMES).round().astype(np.intp)
+        frames = np.concatenate([whole, frames])
+    system, first = motion.problem.system, rotor.first_unknown
+
+    def shaft(rows: Array | NDArray[np.intp]) -> tuple[Array, Array]:
+        x, y = (motion.q[rows] @ system.basis[first + a].T + system.offset[first + a]
+                for a in (0, 1))  # fmt: skip
+        return np.asarray(x), np.asarray(y)
+
+    x, y = shaft(frames)
+    largest = float(np.hypot(x - x.mean(axis=0), y - y.mean(axis=0)).max())
+    scale = 0.1 * float(np.ptp(z)) / max(largest, 1e-12)
+    figure = Figure(figsize=(8.0, 4.2))
+    ax: Any = figure.add_subplot(projection="3d")
+    (line,) = ax.plot([], [], [], color="0.35", linewidth=5, solid_capstyle="round")
+    nodes = [int(np.argmin(np.abs(z - 1e3 * s.position))) for s in motion.stations
+             if np.isfinite(s.position)]  # fmt: skip
+    paths = [ax.plot([], [], [], color="#D55E00", linewidth=1.2)[0] for _ in nodes]
+    (marks,) = ax.plot([], [], [], "o", color="#0b3c5d", markersize=5)
+    reach = 0.2 * float(np.ptp(z))
+    middle_x, middle_y = scale * float(x.mean()), scale * float(y.mean())
+    ax.set(
+        xlim=(z[0], z[-1]), ylim=(middle_y - reach, middle_y + reach),
+        zlim=(-middle_x - reach, -middle_x + reach), xlabel="along the shaft [mm]",
+    )  # fmt: skip
+    ax.set_box_aspect((2.4, 1.0, 1.0))
+    ax.set_yticklabels([])
+    ax.set_zticklabels([])
+    turn = motion.problem.samples_per_revolution
+    with replacing(target) as temporary, writer.saving(figure, str(temporary), dpi=80):
+        for k, at in enumerate(frames):
+            line.set_data_3d(z, scale * y[k], -scale * x[k])
+            marks.set_data_3d(z[nodes], scale * y[k, nodes], -scale * x[k, nodes])
+            last_x, last_y = shaft(np.arange(max(at - turn, 0), at + 1))
+            for node, one in zip(nodes, paths, strict=True):
+                one.set_data_3d(
+                    np.full(len(last_x), z[node]), scale * last_y[:, node], -scale * last_x[:, node]
+                )
+            ax.set_title(
+                f"{caption(title)}\n{motion.speed[at] * RPM:.0f} rpm, turn {turns[at]:.1f}, "
+                f"displacements {scale / 1e3:.3g} times", fontsize=9,
+            )  # fmt: skip
+            writer.grab_frame()
     return target
 
 

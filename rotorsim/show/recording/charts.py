@@ -169,6 +169,28 @@ def send_operating_point(
         )
 
 
+def send_speed_line(
+    stream: rr.RecordingStream, chart: Chart, runs: Sequence[Run], upright: bool = True
+) -> None:
+    """Write a line at the present speed: upright where the speed [rpm] runs along x, else level."""
+    shown = distinct_speeds(runs)[-1:]
+    for run, rows in shown:
+        entity = f"{chart.entity}/speed_now"
+        style = rr.LineStrips2D.from_fields(
+            radii=rr.Radius.ui_points(1.2), colors=ALARM, draw_order=60.0
+        )
+        stream.log(entity, style, static=True)
+        rpm = QUANTITIES["speed"].shown(run.orbit.speed[rows])
+        low, high = chart.axes.get_ylim() if upright else chart.axes.get_xlim()
+        ends = [
+            chart.place(rpm, np.full(rpm.shape, end)) if upright
+            else chart.place(np.full(rpm.shape, end), rpm)
+            for end in (low, high)
+        ]  # fmt: skip
+        strips = np.stack(ends, axis=1).astype(np.float32)
+        stream.send_columns(entity, run_index(run, rows), rr.LineStrips2D.columns(strips=strips))
+
+
 def send_eigenvalues(
     stream: rr.RecordingStream, chart: Chart, curves: Sequence[Campbell], runs: Sequence[Run]
 ) -> None:

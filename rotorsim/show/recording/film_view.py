@@ -32,6 +32,8 @@ from .runs import (
 )
 
 Array = NDArray[np.float64]
+BACKGROUND = [13, 13, 16]
+"""Of the views in three dimensions, in light and dark theme alike."""
 _MOVING_SHARE = 0.95
 """Of the moments of a run, whose peak pressures the scale holds."""
 _JOURNAL_LIMIT = 100_000
@@ -145,7 +147,7 @@ def film_view(name: str, quantity: _Quantity, film: FilmFrame) -> rrb.Spatial3DV
             f"+ {root}/{quantity.name}/wrapped/**",
         ],
         line_grid=False,
-        background=[13, 13, 16],
+        background=BACKGROUND,
         eye_controls=rrb.EyeControls3D(
             position=[2.0 * size, 1.9 * size, 4.6 * size],
             look_target=[-0.1 * size, 0.1 * size, 0.0],
@@ -161,7 +163,7 @@ def unwrapped_view(name: str, quantity: _Quantity, film: FilmFrame) -> rrb.Spati
         origin=f"/bearing/{name}/{quantity.name}/unwrapped",
         name=f"Unwrapped {quantity.title}: {run_title(name)}",
         line_grid=False,
-        background=[13, 13, 16],
+        background=BACKGROUND,
         eye_controls=rrb.EyeControls3D(
             position=[-1.0 * size, 3.5 * size, 5.7 * size],
             look_target=[0.0, 0.1 * size, 0.5 * size],

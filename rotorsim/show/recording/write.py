@@ -15,7 +15,7 @@ import rerun.blueprint as rrb
 from ...atomic import replacing
 from ...errors import InputError
 from ...orbit import Orbit
-from ...orbit.analysis import once_per_turn
+from ...orbit.analysis import once_per_turn, speed_cascade
 from ...study.orbits import FilmFrame
 from ...study.stability import Campbell
 from ...text import markdown
@@ -27,9 +27,11 @@ from .charts import (
     map_chart,
     send_eigenvalues,
     send_operating_point,
+    send_speed_line,
     spectrum_chart,
 )
 from .film_view import log_films
+from .machine_view import MachineRun, first_orbit, log_machine, machine_view
 from .orbit_view import (
     ACTUATOR_FORCE,
     DISPLACEMENT,
@@ -50,6 +52,10 @@ from .runs import SAMPLE_LIMIT, SPEED, TIME, Run, runs_of
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
+
+    from ...files.machine import MachineFile
+    from ...orbit.motion import Motion
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,8 @@ class RecordingContents:
     maps : tuple of xarray.Dataset. Stability maps over speed and mass (see
         `rotorsim.machine.map.StabilityMap.plane`).
     rotor_mass : Per bearing [kg]: height of the moving point on the maps.
+    machine : Rotor and motion of a machine; its stations are the orbits.
+    campbell : Of a machine over speed.
     """
 
     title: str
@@ -74,11 +82,29 @@ class RecordingContents:
     modes: tuple[Campbell, ...] = ()
     maps: tuple[xr.Dataset, ...] = ()
     rotor_mass: float | None = None
+    machine: tuple[MachineFile, Motion] | None = None
+    campbell: Figure | None = None
 
     @cached_property
     def runs(self) -> list[Run]:
         """Orbits with their names."""
         return runs_of(self.orbits)
+
+    @cached_property
+    def machine_run(self) -> MachineRun | None:
+        """Machine in three dimensions; None without one."""
+        if self.machine is None or not self.runs:
+            return None
+        machine, motion = self.machine
+        # orbits may be thinned: the machine has all samples
+        return MachineRun(machine, motion, Run(self.runs[0].name, first_orbit(motion)))
+
+    @cached_property
+    def campbell_chart(self) -> Chart | None:
+        """Natural frequencies over speed; None without them."""
+        if self.campbell is None:
+            return None
+        return Chart("campbell", "Natural frequencies over speed", self.campbell)
 
     @cached_property
     def map_charts(self) -> list[Chart]:
@@ -149,12 +175,21 @@ def _log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> No
     for run in contents.runs:
         log_orbit(stream, run)
         log_series(stream, run)
+    if contents.machine_run is not None:
+        log_machine(stream, contents.machine_run)
     if contents.films:
         log_films(stream, contents.films, contents.runs)
     plane = contents.eigenvalue_chart
-    for chart in (*contents.map_charts, plane, *contents.cascade_charts, contents.spectrum_chart):
+    more = (contents.campbell_chart, contents.spectrum_chart)
+    for chart in (*contents.map_charts, plane, *contents.cascade_charts, *more):
         if chart is not None:
             chart.log(stream)
+    if contents.campbell_chart is not None:
+        send_speed_line(stream, contents.campbell_chart, contents.runs)
+    if contents.machine_run is not None:
+        passing = [run for run in contents.runs if speed_cascade(run.orbit) is not None]
+        for run, chart in zip(passing, contents.cascade_charts, strict=True):
+            send_speed_line(stream, chart, [run], upright=False)
     if plane is not None:
         send_eigenvalues(stream, plane, contents.modes, contents.runs)
     for chart, one in zip(contents.map_charts, contents.maps, strict=True):
@@ -176,6 +211,12 @@ def _notes(contents: RecordingContents) -> str:
     ]
     if any(once_per_turn(orbit) is not None for orbit in contents.orbits):
         lines.append("- Red points: the journal once per turn of the shaft, in the steady part.")
+    if contents.machine_run is not None:
+        lines.append(
+            "- Rotor: seen from the side, displacements drawn "
+            f"{contents.machine_run.magnification:g} times as large; the red lines are the last"
+            " turn of the shaft's centre, the marked part of a disc shows that it turns."
+        )
     if any(film.time is not None for film in contents.films):
         lines.append(
             "- The film follows the journal in the first and the last turns; between them it is"
@@ -304,6 +345,8 @@ def _frequency_views(contents: RecordingContents) -> list[_Part]:
 
 
 def _overview(contents: RecordingContents) -> _Part:
+    if contents.machine_run is not None:
+        return _machine(contents, contents.machine_run)
     front = FRONTS.get(contents.kind, _WHOLE_JOB)
     frequencies: list[_Part] = _frequency_views(contents) if front.frequencies else []
     middle: list[_Part] = [_tabs(frequencies)] if frequencies else []
@@ -330,6 +373,28 @@ def _overview(contents: RecordingContents) -> _Part:
             columns.append(rrb.Vertical(*parts, row_shares=[1.0] * len(parts)))
             widths.append(width)
     return rrb.Horizontal(*columns, column_shares=widths, name="Overview")
+
+
+def _machine(contents: RecordingContents, shown: MachineRun) -> _Part:
+    """Rotor in three dimensions, below it orbits, beside it charts, films and the summary."""
+    orbits = [orbit_view(run) for run in contents.runs[:4]]
+    charts = _frequency_views(contents)
+    if contents.campbell_chart is not None:
+        charts.insert(0, contents.campbell_chart.view)
+    right: list[_Part] = [_tabs(charts)] if charts else []
+    if films := _film_views(contents, flat=False):
+        right.append(_tabs(films))
+    right.append(_summary_view())
+    series = series_of(contents.runs, (SPEED_SERIES, DISPLACEMENT))
+    plots = [series_view(one, contents.runs[:4]) for one in series[:1]]
+    left = rrb.Vertical(
+        machine_view(shown), rrb.Horizontal(*orbits), *plots,
+        row_shares=[2.0, 1.0, *[0.5] * len(plots)],
+    )  # fmt: skip
+    return rrb.Horizontal(
+        left, rrb.Vertical(*right, row_shares=[1.0] * len(right)), column_shares=[2.0, 1.0],
+        name="Overview",
+    )  # fmt: skip
 
 
 def _tabs(parts: Sequence[_Part]) -> _Part:

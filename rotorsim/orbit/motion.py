@@ -1,0 +1,612 @@
+"""Motion of a whole machine in time: what is integrated, how, and what comes back."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import warnings
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..threads import on_one_blas_thread
+from .march import DONE, TOUCHED, march, repeat
+from .orbit import Orbit, OrbitEvent, OrbitStatus
+from .problem import SpeedSchedule
+from .system import Link, MotionSystem, Plain, derivatives, force_on
+
+Array = NDArray[np.float64]
+
+_CHUNK_REVOLUTIONS = 32
+_TOLERANCE = 1e-5
+_SOLVED_TOLERANCE = 1e-4
+"""Where a film is solved at each step."""
+_STATIC_STEPS = 200
+
+
+@dataclass(frozen=True)
+class TorqueDrive:
+    """A shaft that a torque drives: polar inertia times acceleration is the sum of torques.
+
+    start : Speed at the beginning [rad/s].
+    duration : [s]
+    torque : [N m]; negative when it brakes.
+    drag : Torque that retards, over the speed [N m s].
+    inertia : Polar, of the whole rotor [kg m^2].
+    """
+
+    start: float
+    duration: float
+    torque: float
+    drag: float
+    inertia: float
+
+    @property
+    def speeds(self) -> tuple[float, float]:
+        """Lowest and highest speed that the torque alone may lead to [rad/s]."""
+        end = self.start + self.torque / self.inertia * self.duration
+        if self.drag > 0.0:
+            steady = self.torque / self.drag
+            end = steady + (self.start - steady) * math.exp(
+                -self.drag * self.duration / self.inertia
+            )
+        return min(self.start, max(end, 0.0)), max(self.start, end)
+
+
+@dataclass(frozen=True)
+class Station:
+    """A place whose motion is looked at.
+
+    places : (int, int). Of x and y among the displacements of the whole machine.
+    position : From the left end [m].
+    link : The film there, whose housing the motion is relative to.
+    """
+
+    name: str
+    places: tuple[int, int]
+    position: float = float("nan")
+    link: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class MotionProblem:
+    """A machine, its speed, where it begins.
+
+    start, velocity : (n,) arrays. Displacements [m] and velocities [m/s] of the system's unknowns
+        at the beginning.
+    equilibrium : (n,) array. Static position at the first speed [m].
+    tolerance : Relative, of one step; None: 1e-5, with films that are solved 1e-4.
+    kind, thermal_model, note : Labels.
+    reduction_error : Largest relative change of an eigenvalue by the reduction, up to the highest
+        excitation.
+    """
+
+    system: MotionSystem
+    drive: SpeedSchedule | TorqueDrive
+    start: Array
+    velocity: Array
+    equilibrium: Array
+    stations: tuple[Station, ...]
+    samples_per_revolution: int = 64
+    tolerance: float | None = None
+    kind: str = ""
+    thermal_model: str = ""
+    note: str = ""
+    reduction_error: float = 0.0
+    forcing: tuple[float, ...] = ()
+
+    @property
+    def schedule(self) -> SpeedSchedule:
+        """Prescribed speed; InputError where a torque drives."""
+        if isinstance(self.drive, TorqueDrive):
+            raise InputError("a torque drives this machine", key="orbit.drive")
+        return self.drive
+
+    @cached_property
+    def plain(self) -> Plain:
+        """Arrays for the compiled functions."""
+        speeds = self.drive.speeds
+        return self.system.plain(min(speeds), max(speeds))
+
+    @property
+    def drive_turns(self) -> float:
+        """Turns of the shaft in the whole run; with a torque, at most."""
+        if isinstance(self.drive, TorqueDrive):
+            return max(self.drive.speeds) * self.drive.duration / (2.0 * math.pi)
+        return self.drive.revolutions
+
+    @property
+    def relative_tolerance(self) -> float:
+        """Tolerance in use."""
+        if self.tolerance is not None:
+            return self.tolerance
+        return _TOLERANCE if self.system.compilable else _SOLVED_TOLERANCE
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """Samples of a machine's motion (SI, machine frame).
+
+    t, speed, angle : (m,) arrays. [s], of the shaft [rad/s, rad]; the samples are equally spaced in
+        the angle.
+    q, v : (m, n) arrays. Unknowns of the system and their rates [m, m/s].
+    """
+
+    t: Array
+    speed: Array
+    angle: Array
+    q: Array
+    v: Array
+    problem: MotionProblem
+    status: OrbitStatus
+    message: str = ""
+    events: tuple[OrbitEvent, ...] = field(default=())
+
+    @property
+    def stations(self) -> tuple[Station, ...]:
+        """Places whose motion can be asked for by name."""
+        return self.problem.stations
+
+    @property
+    def revolutions(self) -> Array:
+        """Turns of the shaft at each sample [-]."""
+        return self.angle / (2.0 * np.pi)
+
+    def station(self, name: str) -> Station:
+        """Station by its name.
+
+        Raises InputError: There is none; the message lists them.
+        """
+        for one in self.stations:
+            if one.name == name:
+                return one
+        known = ", ".join(one.name for one in self.stations)
+        raise InputError(f"must be one of {known}", key="station", value=name)
+
+    def stations_of(self, link: int) -> str:
+        """Name of the station of a film."""
+        return next(one.name for one in self.stations if one.link == link)
+
+    def displacement(self, places: Sequence[int] | NDArray[np.intp]) -> Array:
+        """Displacements (m, k) of unknowns of the whole machine [m]."""
+        rows = np.asarray(places, dtype=np.intp)
+        system = self.problem.system
+        return self.q @ system.basis[rows].T + system.offset[rows]
+
+    def link_motion(self, link: Link) -> Array:
+        """Position, velocity, effective speed (m, 5) of a film's inner body in its housing."""
+        return link.motion(self.q, self.v, self.speed)
+
+    def link_force(self, link: Link) -> Array:
+        """Force (m, 2) of a link on its inner body [N]."""
+        return self.problem.system.link_forces(link, self.q, self.v, self.speed)
+
+    def orbit(self, name: str) -> Orbit:
+        """Motion of one station for analysis, figures and recordings of an `Orbit`.
+
+        In a film it is relative to the housing, with the film's force; elsewhere it is that of
+        the shaft's centre, without a force.
+        """
+        station, system = self.station(name), self.problem.system
+        links = [link for link in system.links if link.film]
+        clearance = min((one.force.radial_clearance for one in links), default=0.0)
+        zero = np.zeros((self.t.size, 2))
+        rows = list(station.places)
+        if station.link is not None:
+            link = system.links[station.link]
+            clearance = link.force.radial_clearance
+            motion, force = self.link_motion(link), self.link_force(link)
+            rest = self.problem.equilibrium[None]
+            home = link.motion(rest, 0.0 * rest, np.zeros(1))[0, :2]
+        else:
+            place = self.displacement(rows)
+            velocity = self.v @ system.basis[rows].T
+            motion, force = np.hstack([place, velocity]), zero
+            home = system.basis[rows] @ self.problem.equilibrium + system.offset[rows]
+            clearance = clearance or max(float(np.abs(place - home).max(initial=0.0)), 1e-9)
+        turn = np.linspace(0.0, 2.0 * math.pi, 361)
+        x, y, vx, vy = (np.ascontiguousarray(column) for column in motion[:, :4].T)
+        return Orbit(
+            t=self.t, x=x, y=y, vx=vx, vy=vy, speed=self.speed, angle=self.angle,
+            fx=force[:, 0], fy=force[:, 1], load=zero, actuator_force=zero,
+            displacements=motion[:, :2], min_film=clearance - np.hypot(x, y),
+            boundary=clearance * np.column_stack([np.cos(turn), np.sin(turn)]),
+            samples_per_revolution=self.problem.samples_per_revolution,
+            radial_clearance=clearance, equilibrium=(float(home[0]), float(home[1])),
+            force_model=system.links[station.link].force.name if station.link is not None
+            else ("linear" if system.linear else "free shaft"),
+            thermal_model=self.problem.thermal_model, status=self.status, message=self.message,
+            forced=bool(system.unbalance or system.loads), forcing=self.problem.forcing,
+            kind=self.problem.kind, note=self.problem.note,
+        )  # fmt: skip
+
+    def part(self, first: int, last: int | None = None) -> Motion:
+        """Samples first to last (excluded)."""
+        chosen = slice(first, last)
+        cut = {name: getattr(self, name)[chosen] for name in _SERIES}
+        return replace(self, **cut)
+
+
+_SERIES = ("t", "speed", "angle", "q", "v")
+
+
+def static_position(
+    system: MotionSystem, plain: Plain, speed: float, guess: Array
+) -> tuple[Array, float]:
+    """Displacements (n,) at which the machine rests, and the force that is left over [N].
+
+    Newton's method with the links' derivatives by differences, steps halved where films would
+    touch; unbalance and varying loads do not act.
+    """
+    still = plain._replace(
+        unbalance_start=np.full_like(plain.unbalance_start, math.inf),
+        load_times=plain.load_times + np.array([0.0, math.inf, math.inf]),
+    )
+    rings = np.array([link.ring for link in system.links if link.ring >= 0], dtype=int)
+
+    def residual(z: Array) -> Array:
+        q, v = z.copy(), np.zeros_like(z)
+        q[rings], v[rings] = 0.0, z[rings]
+        force = force_on(0.0, q, v, 0.0, speed, 0.0, still)
+        return force + system.solved(q, v, speed)
+
+    def inside(z: Array) -> bool:
+        for link in system.links:
+            if link.film:
+                x, y = link.motion(z[None], np.zeros((1, z.size)), np.zeros(1))[0, :2]
+                if math.hypot(x, y) >= 0.9995 * link.force.radial_clearance:
+                    return False
+        return True
+
+    z = guess.copy()
+    off = residual(z)
+    weight = max(float(np.abs(system.constant).max()), 1e-9)
+    for _ in range(_STATIC_STEPS):
+        if np.abs(off).max() < 1e-10 * weight:
+            break
+        q, v = z.copy(), np.zeros_like(z)
+        q[rings], v[rings] = 0.0, z[rings]
+        jacobian, damping = derivatives(q, v, speed, system.scale, still)
+        jacobian[:, rings] = damping[:, rings]
+        jacobian = jacobian + system.solved_derivatives(q, v, speed)[0]
+        step = np.linalg.lstsq(jacobian, off, rcond=1e-14)[0]
+        share = 1.0
+        while share > 1e-4:
+            trial = z + share * step
+            if inside(trial):
+                new = residual(trial)
+                if np.linalg.norm(new) < np.linalg.norm(off):
+                    break
+            share *= 0.5
+        else:
+            break
+        z, off = trial, new
+    return z, float(np.abs(off).max())
+
+
+@on_one_blas_thread
+def simulate_motion(
+    problem: MotionProblem,
+    *,
+    consume: Callable[[Motion], None] | None = None,
+    keep_revolutions: int | None = None,
+) -> Motion:
+    """Integrate a machine's motion to its end, touch-down or failure.
+
+    consume : Called with each piece of some revolutions as soon as it is there.
+    keep_revolutions : Keep the last so many revolutions only.
+
+    Returns
+    -------
+    Motion
+        With ``status``: never an exception for what happens in the run.
+    """
+    pieces: deque[Motion] = deque()
+    turns = 0.0
+    for piece in _pieces(problem):
+        if consume is not None:
+            consume(piece)
+        pieces.append(piece)
+        turns += piece.t.size / problem.samples_per_revolution
+        while keep_revolutions is not None and len(pieces) > 1:
+            first = pieces[0].t.size / problem.samples_per_revolution
+            if turns - first < keep_revolutions:
+                break
+            pieces.popleft()
+            turns -= first
+    joined = {name: np.concatenate([getattr(one, name) for one in pieces]) for name in _SERIES}
+    return replace(pieces[-1], **joined)
+
+
+def _pieces(problem: MotionProblem) -> Iterator[Motion]:
+    if isinstance(problem.drive, TorqueDrive):
+        yield from _driven(problem, problem.drive)
+        return
+    schedule = problem.drive
+    samples = problem.samples_per_revolution
+    edges = _edges(problem, schedule)
+    count = math.floor(schedule.revolutions * samples + 1e-9) + 1
+    q, v, done = problem.start, problem.velocity, 0
+    if problem.system.linear and schedule.is_constant:
+        advance: _Advance = _Exact(problem, schedule)
+    elif problem.system.compilable:
+        advance = _Rosenbrock(problem, schedule)
+    else:
+        advance = _Scipy(problem, schedule)
+    for start, stop in itertools.pairwise(edges):
+        last = stop == edges[-1]
+        turned = float(schedule.angle_at(stop)) / (2.0 * np.pi) * samples
+        upto = count if last else math.ceil(turned - 1e-9)
+        angles = 2.0 * np.pi * np.arange(done, upto) / samples
+        times = np.clip(schedule.time_at(angles), start, stop)
+        found, status, message, q, v = advance(q, v, start, stop, times)
+        reached = found[0].shape[0]
+        done += reached
+        ended = last or status is not OrbitStatus.COMPLETED
+        yield Motion(
+            times[:reached], schedule.speed_at(times[:reached]), angles[:reached], *found, problem,
+            status if ended else OrbitStatus.RUNNING, message,
+        )  # fmt: skip
+        if ended:
+            return
+
+
+_Answer = tuple[tuple[Array, Array], OrbitStatus, str, Array, Array]
+_Advance = Callable[[Array, Array, float, float, Array], _Answer]
+
+
+def _edges(problem: MotionProblem, schedule: SpeedSchedule) -> list[float]:
+    """Where pieces end [s]: after some revolutions, and at corners of speed and loads."""
+    turns = np.arange(0.0, schedule.revolutions, _CHUNK_REVOLUTIONS)
+    corners = {start for start, _ in problem.system.unbalance}
+    corners |= {time for load in problem.system.loads for time in (load.start, load.stop)}
+    edges = {float(t) for t in schedule.time_at(2.0 * np.pi * turns)} | set(schedule.times)
+    edges |= {t for t in corners if 0.0 < t < schedule.duration}
+    ordered, least = sorted(edges), 1e-9 * schedule.duration
+    kept = [ordered[0]]
+    kept += [t for t in ordered[1:] if t - kept[-1] > least]
+    kept[-1] = schedule.duration
+    return kept
+
+
+def _touched(problem: MotionProblem, t: float, q: Array) -> str:
+    films = [one for one in problem.system.links if one.film]
+    places = [one.motion(q[None], 0.0 * q[None], np.zeros(1))[0, :2] for one in films]
+    left = [
+        one.force.radial_clearance - math.hypot(*place)
+        for one, place in zip(films, places, strict=True)
+    ]
+    name = films[int(np.argmin(left))].name if films else "film"
+    return f"{name}: the surfaces touch after {t:.6g} s"
+
+
+class _Rosenbrock:
+    """Compiled steps; see `rotorsim.orbit.march`."""
+
+    def __init__(self, problem: MotionProblem, schedule: SpeedSchedule) -> None:
+        self.problem, self.knots = problem, schedule.knots
+        self.step = 2.0 * np.pi / max(max(schedule.speeds), 1e-9) / 200.0
+
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+        problem = self.problem
+        qs, vs, count, status, end, q, v, self.step = march(
+            q, v, float(start), float(stop), np.ascontiguousarray(times), self.knots,
+            problem.plain, problem.system.scale, problem.relative_tolerance, self.step,
+        )  # fmt: skip
+        found, message = OrbitStatus.COMPLETED, ""
+        if status == TOUCHED:
+            found, message = OrbitStatus.TOUCH_DOWN, _touched(problem, end, q)
+        elif status != DONE:
+            found = OrbitStatus.INTEGRATION_FAILED
+            message = f"the steps became too short at {end:.6g} s"
+        return (qs[:count], vs[:count]), found, message, q, v
+
+
+class _Exact:
+    """Linear machine at one speed: its matrix exponential, loads as oscillators of their own."""
+
+    def __init__(self, problem: MotionProblem, schedule: SpeedSchedule) -> None:
+        self.problem, self.speed = problem, schedule.speeds[0]
+        self.period = 2.0 * np.pi / self.speed / problem.samples_per_revolution
+        self.made: dict[bytes, tuple[Array, Array]] = {}
+
+    def _generator(self, middle: float) -> tuple[Array, list[float]]:
+        """Matrix of motion and oscillators that act at a time, and the oscillators' frequencies."""
+        system, w = self.problem.system, self.speed
+        n = system.size
+        stiffness, damping = derivatives(np.zeros(n), np.zeros(n), w, system.scale,
+                                         self.problem.plain)  # fmt: skip
+        forces = [(0.0, self.problem.plain.constant.astype(complex))]
+        turning = [u for start, u in system.unbalance if start <= middle]
+        if turning:
+            forces.append((w, w * w * np.sum(turning, axis=0)))
+        forces += [
+            (load.frequency, load.amplitude)
+            for load in system.loads
+            if load.start <= middle < load.stop
+        ]
+        a = np.zeros((2 * n + 2 * len(forces),) * 2)
+        inverse = np.linalg.inv(system.mass)
+        a[:n, n : 2 * n] = np.eye(n)
+        a[n : 2 * n, :n], a[n : 2 * n, n : 2 * n] = -inverse @ stiffness, -inverse @ damping
+        for k, (frequency, amplitude) in enumerate(forces):
+            cos = 2 * n + 2 * k
+            a[n : 2 * n, cos], a[n : 2 * n, cos + 1] = (
+                inverse @ amplitude.real, -inverse @ amplitude.imag
+            )  # fmt: skip
+            a[cos, cos + 1], a[cos + 1, cos] = -frequency, frequency
+        return a, [frequency for frequency, _ in forces]
+
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+        from scipy.linalg import expm
+
+        a, frequencies = self._generator(0.5 * (start + stop))
+        n = q.size
+        key = a.tobytes()
+        if key not in self.made:
+            self.made[key] = a, np.asarray(expm(a * self.period))
+        step = self.made[key][1]
+
+        def state(t: float, q: Array, v: Array) -> Array:
+            turned = [part for f in frequencies for part in (math.cos(f * t), math.sin(f * t))]
+            return np.concatenate([q, v, turned])
+
+        if not times.size:
+            end = expm(a * (stop - start)) @ state(start, q, v)
+            return (np.zeros((0, n)), np.zeros((0, n))), OrbitStatus.COMPLETED, "", *_halves(end, n)
+        first = state(start, q, v)
+        if times[0] > start:
+            first = expm(a * (times[0] - start)) @ first
+        path = repeat(step, np.ascontiguousarray(first), times.size)
+        left = stop - times[-1]
+        if abs(left - self.period) < 1e-9 * self.period:
+            end = step @ path[-1]
+        else:
+            end = path[-1] if left <= 0.0 else expm(a * left) @ path[-1]
+        found = path[:, :n].copy(), path[:, n : 2 * n].copy()
+        return found, OrbitStatus.COMPLETED, "", *_halves(end, n)
+
+
+def _halves(state: Array, n: int) -> tuple[Array, Array]:
+    return state[:n].copy(), state[n : 2 * n].copy()
+
+
+class _Scipy:
+    """SciPy's LSODA, for films that are solved at each step and for shafts that a torque drives."""
+
+    def __init__(self, problem: MotionProblem, schedule: SpeedSchedule | None) -> None:
+        self.problem, self.schedule = problem, schedule
+        system, n = problem.system, problem.system.size
+        self.inverse = np.linalg.inv(system.mass)
+        top = max(max(problem.drive.speeds), 1.0)
+        least = 1e-2 * problem.relative_tolerance * system.scale
+        self.tolerance = np.concatenate([least, top * least])
+        if schedule is None:
+            self.tolerance = np.concatenate([self.tolerance, [1e-9, 1e-9 * top]])
+        self.size = n
+
+    def rates(self, t: float, s: Array) -> Array:
+        """State rates: displacements, velocities; angle and speed where a torque drives."""
+        n, problem, p = self.size, self.problem, self.problem.plain
+        q, v = np.ascontiguousarray(s[:n]), np.ascontiguousarray(s[n : 2 * n])
+        if self.schedule is not None:
+            phi, w = float(self.schedule.angle_at(t)), float(self.schedule.speed_at(t))
+            alpha = float(self.schedule.knots[-2, 3]) if len(self.schedule.times) == 2 else float(
+                self.schedule._piece(np.asarray(t))[3])  # fmt: skip
+            force = force_on(t, q, v, phi, w, alpha, p)
+            if not problem.system.compilable:
+                force = force + problem.system.solved(q, v, w)
+            return np.concatenate([v, self.inverse @ force])
+        drive = problem.drive
+        assert isinstance(drive, TorqueDrive)
+        phi, w = float(s[2 * n]), float(s[2 * n + 1])
+        force = force_on(t, q, v, phi, w, 0.0, p)
+        if not problem.system.compilable:
+            force = force + problem.system.solved(q, v, w)
+        # u (x'' sin - y'' cos) of the unbalance retards the shaft: the two accelerate together
+        arm = np.zeros(n)
+        for start, u in problem.system.unbalance:
+            if t >= start:
+                arm += u.real * math.sin(phi) + u.imag * math.cos(phi)
+        free, coupled = self.inverse @ force, self.inverse @ arm
+        torque = drive.torque - drive.drag * w + arm @ free
+        alpha = torque / (drive.inertia - arm @ coupled)
+        return np.concatenate([v, free + alpha * coupled, [w, alpha]])
+
+    def jacobian(self, t: float, s: Array) -> Array:
+        """Derivatives of the rates at a prescribed speed: films by differences, the rest as it is.
+
+        LSODA's own would solve each film once for every unknown of the rotor.
+        """
+        assert self.schedule is not None
+        n, system, w = self.size, self.problem.system, float(self.schedule.speed_at(t))
+        q, v = np.ascontiguousarray(s[:n]), np.ascontiguousarray(s[n : 2 * n])
+        stiffness, damping = derivatives(q, v, w, system.scale, self.problem.plain)
+        more_stiffness, more_damping = system.solved_derivatives(q, v, w)
+        found = np.zeros((2 * n, 2 * n))
+        found[:n, n:] = np.eye(n)
+        found[n:, :n] = -self.inverse @ (stiffness + more_stiffness)
+        found[n:, n:] = -self.inverse @ (damping + more_damping)
+        return found
+
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+        from scipy.integrate import solve_ivp
+
+        problem, n = self.problem, self.size
+        films = [one for one in problem.system.links if one.film]
+
+        def gap(_t: float, s: Array) -> float:
+            left = [1.0]
+            for one in films:
+                x, y = one.motion(s[None, :n], 0.0 * s[None, :n], np.zeros(1))[0, :2]
+                left.append(one.force.radial_clearance - one.minimum_film - math.hypot(x, y))
+            return min(left)
+
+        gap.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
+        ends = times if times.size and times[-1] >= stop else np.append(times, stop)
+        empty = np.zeros((0, n))
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            try:
+                found = solve_ivp(
+                    self.rates, (start, stop), np.concatenate([q, v]), method="LSODA", t_eval=ends,
+                    events=gap, rtol=problem.relative_tolerance, atol=self.tolerance,
+                    jac=self.jacobian,
+                )  # fmt: skip
+            except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
+                return (empty, empty), OrbitStatus.INTEGRATION_FAILED, str(error), q, v
+        y = found.y.T if len(found.t) else np.zeros((0, 2 * n))
+        count = min(times.size, len(y))
+        status, message = OrbitStatus.COMPLETED, ""
+        if found.status == 1:
+            status = OrbitStatus.TOUCH_DOWN
+            end = found.y_events[0][0]
+            message = _touched(problem, float(found.t_events[0][0]), end[:n])
+        elif found.status < 0:
+            status, message = OrbitStatus.INTEGRATION_FAILED, str(found.message)
+        end = y[-1] if len(y) else np.concatenate([q, v])
+        return (y[:count, :n], y[:count, n:]), status, message, *_halves(end, n)
+
+
+def _driven(problem: MotionProblem, drive: TorqueDrive) -> Iterator[Motion]:
+    """Pieces of a run whose speed follows from a torque."""
+    from scipy.integrate import solve_ivp
+
+    solver, n = _Scipy(problem, None), problem.system.size
+    corners = sorted({t for t, _ in problem.system.unbalance if 0.0 < t < drive.duration})
+    span = 2.0 * np.pi * _CHUNK_REVOLUTIONS / max(max(drive.speeds), 1e-9)
+    edges = sorted({*np.arange(0.0, drive.duration, span).tolist(), drive.duration, *corners})
+    state = np.concatenate([problem.start, problem.velocity, [0.0, drive.start]])
+    done, per_turn = 0, problem.samples_per_revolution
+    for start, stop in itertools.pairwise(edges):
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            found = solve_ivp(
+                solver.rates, (start, stop), state, method="LSODA", dense_output=True,
+                rtol=problem.relative_tolerance, atol=solver.tolerance,
+            )  # fmt: skip
+        last = found.status < 0 or stop == edges[-1]
+        turned = np.maximum.accumulate(found.y[2 * n])
+        upto = math.floor(turned[-1] / (2.0 * np.pi) * per_turn + 1e-9) + 1
+        angles = 2.0 * np.pi * np.arange(done, max(upto, done)) / per_turn
+        times = np.interp(angles, turned, found.t)
+        for _ in range(3):
+            if times.size:
+                at = found.sol(times)
+                times = times + (angles - at[2 * n]) / np.maximum(at[2 * n + 1], 1e-9)
+                times = np.clip(times, start, stop)
+        y = found.sol(times).T if times.size else np.zeros((0, 2 * n + 2))
+        done += times.size
+        status = OrbitStatus.RUNNING
+        if last:
+            status = OrbitStatus.COMPLETED if found.status >= 0 else OrbitStatus.INTEGRATION_FAILED
+        yield Motion(times, y[:, 2 * n + 1], angles, y[:, :n], y[:, n : 2 * n], problem, status,
+                     "" if found.status >= 0 else str(found.message))  # fmt: skip
+        if last:
+            return
+        state = found.y[:, -1]

@@ -1,0 +1,501 @@
+"""A machine in time: matrices of a (reduced) rotor, films and stops between its unknowns, loads.
+
+M q'' + (D + w G) q' + (K + w H) q = constant forces + unbalance + loads + linear supports + links,
+with the shaft's angle phi and speed w prescribed (`SpeedSchedule`) or following from a torque
+(`TorqueDrive`). Torques act along the bent shaft's axis, so that the lateral equations know the
+angular acceleration by the unbalance alone.
+
+Everything travels in plain arrays (`_Plain`) to one compiled function of the forces, which all
+integrators call.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ..compiled import compiled
+from ..errors import InputError
+from .forces import BearingForce, CompilableForce
+from .kernels import STOP, film_force
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+_SPEED_INTERVALS = 256
+GROUND = (-1, -1)
+
+
+@runtime_checkable
+class GeneralisedForce(Protocol):
+    """A solved film whose pads move as well (see `SolvedFilmForce`)."""
+
+    def forces(self, q: Array, v: Array, speed: float) -> Array:
+        """Forces (k,) on journal and pads."""
+        ...
+
+    def linear(self, q: Array, v: Array, speed: float) -> tuple[Array, Array, Array]:
+        """`forces`, and stiffness and damping (k, k)."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A film or a stop between a body of the machine and its housing.
+
+    force : On the inner body, from its position and velocity relative to the outer one.
+    inner, outer : (int, int). Unknowns along x and y of both; `GROUND` for a housing that stands
+        still.
+    turning : (float, float). Speed that the force is asked for: this times the shaft's, plus this
+        times the ring's. Of a film it is the sum of the speeds of its surfaces: (1, 0) for a
+        journal in a housing, (0, 0) for a damper.
+    ring : Unknown that is the angle of a floating ring; -1 without one.
+    side : 1 where the ring is the outer surface, -1 where it is the inner one.
+    drag : Friction torque of the centred film over the difference of the surfaces' speeds [N m s].
+    offset : (float, float). Of the housing's centre [m].
+    minimum_film : At which the run ends [m].
+    film : False for a stop.
+    angle : From x to the x axis of a film that is solved [rad].
+    pads : Unknowns that are the displacements of its pads.
+    """
+
+    name: str
+    force: BearingForce
+    inner: tuple[int, int]
+    outer: tuple[int, int] = GROUND
+    turning: tuple[float, float] = (1.0, 0.0)
+    ring: int = -1
+    side: float = 0.0
+    drag: float = 0.0
+    offset: tuple[float, float] = (0.0, 0.0)
+    minimum_film: float = 0.0
+    film: bool = True
+    angle: float = 0.0
+    pads: tuple[int, ...] = ()
+
+    def motion(self, q: Array, v: Array, speed: Array) -> Array:
+        """Position, velocity and speed (m, 5) that the force is asked for, along a run."""
+        columns = []
+        for values, offset in ((q, self.offset), (v, (0.0, 0.0))):
+            for axis in (0, 1):
+                outer = values[:, self.outer[axis]] if self.outer[axis] >= 0 else 0.0
+                columns.append(values[:, self.inner[axis]] - outer - offset[axis])
+        ring = v[:, self.ring] if self.ring >= 0 else 0.0
+        columns.append(self.turning[0] * speed + self.turning[1] * ring)
+        return np.column_stack(columns)
+
+
+@dataclass(frozen=True, eq=False)
+class LinearBlock:
+    """Linear supports: force f(w) - K(w) q - C(w) v on a few unknowns.
+
+    law : Speed [rad/s] to f (m,), K and C (m, m).
+    """
+
+    unknowns: NDArray[np.intp]
+    law: Callable[[float], tuple[Array, Array, Array]]
+
+    def row(self, speed: float) -> Array:
+        """K, C and f in one row, (2 m^2 + m,)."""
+        force, stiffness, damping = self.law(speed)
+        return np.concatenate([np.ravel(stiffness), np.ravel(damping), np.ravel(force)])
+
+
+class Harmonic(NamedTuple):
+    """A force Re(amplitude exp(i frequency t)) from `start` until `stop` [s]; (n,) amplitudes."""
+
+    amplitude: ComplexArray
+    frequency: float = 0.0
+    start: float = -math.inf
+    stop: float = math.inf
+
+
+@dataclass(frozen=True, eq=False)
+class MotionSystem:
+    """Equations of motion.
+
+    mass, damping, gyroscopic, stiffness, circulatory : (n, n) arrays. The mass matrix positive
+        definite.
+    constant : (n,) array. [N]
+    unbalance : tuple of (float, (n,) complex array). From when it is there [s], and its mass times
+        radius on each unknown [kg m]: the force is Re(u (w^2 - i w') exp(i phi)).
+    scale : (n,) array. A displacement that counts as large, of each unknown: for tolerances [m].
+    basis, offset : (k, n) and (k,) arrays. From the unknowns to the displacements of the whole
+        machine.
+    """
+
+    mass: Array
+    damping: Array
+    gyroscopic: Array
+    stiffness: Array
+    circulatory: Array
+    constant: Array
+    scale: Array
+    basis: Array
+    offset: Array
+    unbalance: tuple[tuple[float, ComplexArray], ...] = ()
+    links: tuple[Link, ...] = ()
+    block: LinearBlock | None = None
+    loads: tuple[Harmonic, ...] = ()
+    names: tuple[tuple[str, str], ...] = field(default=(), repr=False)
+
+    def __post_init__(self) -> None:
+        least = np.linalg.eigvalsh(self.mass)[0]
+        if not least > 0.0:
+            raise InputError(
+                "must be positive definite: in time every unknown needs a mass, those of pads and "
+                "pedestals too", key="mass", value=float(least),
+            )  # fmt: skip
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.mass.shape[0]
+
+    @cached_property
+    def linear(self) -> bool:
+        """Whether all forces are linear in the motion."""
+        return not self.links
+
+    @cached_property
+    def compilable(self) -> bool:
+        """Whether all links have a compiled form."""
+        return all(isinstance(link.force, CompilableForce) for link in self.links)
+
+    def plain(self, lowest: float, highest: float) -> Plain:
+        """Arrays for the compiled functions, good between two speeds [rad/s].
+
+        Links without a compiled form are left out: their forces are added in Python.
+        """
+        links = [link for link in self.links if isinstance(link.force, CompilableForce)]
+        numbers, tables, ints, floats = [np.zeros(1)], [np.zeros(1)], [], []
+        for link in links:
+            assert isinstance(link.force, CompilableForce)
+            top = max(abs(link.turning[0]) + abs(link.turning[1]), 1e-300)
+            form = link.force.compiled(lowest * min(top, 1.0), highest * max(top, 1.0))
+            n0, t0 = sum(map(len, numbers)), sum(map(len, tables))
+            numbers.append(np.asarray(form.numbers, dtype=float))
+            tables.append(np.ravel(form.table))
+            ints.append(
+                [form.kind, *link.inner, *link.outer, link.ring, n0, numbers[-1].size, t0,
+                 *form.table.shape]
+            )  # fmt: skip
+            clearance = link.force.radial_clearance if link.film else math.inf
+            floats.append(
+                [*link.turning, link.side, link.drag, *link.offset, clearance, link.minimum_film]
+            )
+        index, table, low, step = np.zeros(0, dtype=np.int64), np.zeros((1, 4, 0)), lowest, 1.0
+        if self.block is not None:
+            index = self.block.unknowns.astype(np.int64)
+            if highest > lowest:
+                speeds = np.linspace(lowest, highest, _SPEED_INTERVALS + 1)
+                rows = np.array([self.block.row(float(speed)) for speed in speeds])
+                step = float(speeds[1] - speeds[0])
+                spline = CubicSpline(np.arange(speeds.size), rows)
+                table = np.ascontiguousarray(np.moveaxis(spline.c[::-1], 0, 1))
+        loads = self.loads
+        empty = np.zeros((0, self.size))
+        damping, stiffness, constant = self.damping, self.stiffness, self.constant
+        gyroscopic, circulatory = self.gyroscopic, self.circulatory
+        if highest == lowest:
+            # one matrix of each kind at one speed
+            damping, stiffness = damping + lowest * gyroscopic, stiffness + lowest * circulatory
+            gyroscopic, circulatory = empty, empty
+            if self.block is not None:
+                force, more_stiffness, more_damping = self.block.law(lowest)
+                place, constant = np.ix_(index, index), constant.copy()
+                constant[index] += force
+                stiffness[place] += more_stiffness
+                damping[place] += more_damping
+                index = index[:0]
+        return Plain(
+            *(np.ascontiguousarray(a, dtype=float) for a in (
+                self.mass, np.linalg.inv(self.mass), damping, gyroscopic, stiffness, circulatory,
+                constant,
+            )),
+            np.array([start for start, _ in self.unbalance], dtype=float),
+            np.array([u.real for _, u in self.unbalance]).reshape(-1, self.size),
+            np.array([u.imag for _, u in self.unbalance]).reshape(-1, self.size),
+            np.array([[h.frequency, h.start, h.stop] for h in loads]).reshape(-1, 3),
+            np.array([h.amplitude.real for h in loads]) if loads else empty,
+            np.array([h.amplitude.imag for h in loads]) if loads else empty,
+            np.array(ints, dtype=np.int64).reshape(-1, 12),
+            np.array(floats, dtype=float).reshape(-1, 8),
+            np.concatenate(numbers), np.concatenate(tables), index, table, low, step,
+        )  # fmt: skip
+
+    def solved(self, q: Array, v: Array, speed: float) -> Array:
+        """Forces (n,) of the links that have no compiled form."""
+        force = np.zeros(self.size)
+        for link in self.links:
+            if not isinstance(link.force, CompilableForce):
+                np.add.at(force, *self._spread(link, self._pull(link, q, v, speed)[0]))
+        return force
+
+    def solved_derivatives(self, q: Array, v: Array, speed: float) -> tuple[Array, Array]:
+        """Stiffness and damping (n, n) of the links without a compiled form."""
+        found = np.zeros((2, self.size, self.size))
+        for link in self.links:
+            if not isinstance(link.force, CompilableForce):
+                spread = np.zeros((self.size, 2 + len(link.pads)))
+                for column, unit in enumerate(np.eye(spread.shape[1])):
+                    np.add.at(spread[:, column], *self._spread(link, unit))
+                _, stiffness, damping = self._pull(link, q, v, speed, slopes=True)
+                found += [spread @ part @ spread.T for part in (stiffness, damping)]
+        return found[0], found[1]
+
+    def link_forces(self, link: Link, q: Array, v: Array, speed: Array) -> Array:
+        """Force (m, 2) of a link on its inner body along (m, n) motion [N]."""
+        if isinstance(link.force, CompilableForce):
+            rows = link.motion(q, v, speed)
+            return np.array([link.force.force(*row) for row in rows]).reshape(-1, 2)
+        rows = zip(q, v, speed, strict=True)
+        return np.array([self._pull(link, a, b, float(w))[0][:2] for a, b, w in rows])
+
+    def _pull(
+        self, link: Link, q: Array, v: Array, speed: float, slopes: bool = False
+    ) -> tuple[Array, ...]:
+        """Forces of a solved link on body and pads; with `slopes` stiffness and damping too."""
+        x, y, vx, vy, turning = link.motion(q[None], v[None], np.array([speed]))[0]
+        pads = list(link.pads)
+        here, rate = np.array([x, y, *q[pads]]), np.array([vx, vy, *v[pads]])
+        if not isinstance(link.force, GeneralisedForce):
+            return self._differences(link.force, here, rate, float(turning), slopes)
+        turn = np.eye(here.size)
+        c, s = math.cos(link.angle), math.sin(link.angle)
+        turn[:2, :2] = [[c, -s], [s, c]]
+        motion = turn.T @ here, turn.T @ rate, float(turning)
+        if not slopes:
+            return (turn @ link.force.forces(*motion),)
+        force, stiffness, damping = link.force.linear(*motion)
+        return turn @ force, turn @ stiffness @ turn.T, turn @ damping @ turn.T
+
+    @staticmethod
+    def _differences(
+        force: BearingForce, here: Array, rate: Array, speed: float, slopes: bool
+    ) -> tuple[Array, ...]:
+        both = np.concatenate([here, rate])
+        before = np.array(force.force(*both, speed))
+        if not slopes:
+            return (before,)
+        columns, length = [], 1e-5 * force.radial_clearance
+        for j in range(4):
+            step = length if j < 2 else length * max(abs(speed), 1.0)
+            moved = both.copy()
+            moved[j] += step
+            columns.append((before - np.array(force.force(*moved, speed))) / step)
+        return before, np.column_stack(columns[:2]), np.column_stack(columns[2:])
+
+    @staticmethod
+    def _spread(link: Link, pull: Array) -> tuple[NDArray[np.intp], Array]:
+        """Where the forces of a link act, and how large they are."""
+        at, sizes = [*link.inner, *link.pads], [*pull]
+        if link.outer[0] >= 0:
+            at += link.outer
+            sizes += [-pull[0], -pull[1]]
+        return np.array(at, dtype=np.intp), np.array(sizes)
+
+    def displacement(self, q: Array) -> Array:
+        """Displacements (m, k) of the whole machine along (m, n) unknowns."""
+        return q @ self.basis.T + self.offset
+
+
+class Plain(NamedTuple):
+    """A `MotionSystem` in arrays; see there, and `MotionSystem.plain` for links and block."""
+
+    mass: Array
+    inverse: Array
+    damping: Array
+    gyroscopic: Array
+    stiffness: Array
+    circulatory: Array
+    constant: Array
+    unbalance_start: Array
+    unbalance_real: Array
+    unbalance_imag: Array
+    load_times: Array
+    load_real: Array
+    load_imag: Array
+    links: NDArray[np.int64]
+    link_numbers: Array
+    numbers: Array
+    tables: Array
+    block: NDArray[np.int64]
+    block_table: Array
+    block_low: float
+    block_step: float
+
+
+@compiled()
+def _at(values: Array, index: int) -> float:
+    return values[index] if index >= 0 else 0.0
+
+
+@compiled()
+def link_place(k: int, q: Array, v: Array, p: Plain) -> tuple[float, ...]:
+    """x, y, vx, vy of link k relative to its housing, and the speed of its ring."""
+    links, f = p.links[k], p.link_numbers[k]
+    x = _at(q, links[1]) - _at(q, links[3]) - f[4]
+    y = _at(q, links[2]) - _at(q, links[4]) - f[5]
+    vx = _at(v, links[1]) - _at(v, links[3])
+    vy = _at(v, links[2]) - _at(v, links[4])
+    return x, y, vx, vy, _at(v, links[5])
+
+
+@compiled()
+def link_force(
+    k: int, x: float, y: float, vx: float, vy: float, ring: float, w: float, p: Plain
+) -> tuple[float, float, float]:
+    """Force (x, y) of link k on its inner body, and its torque on the ring."""
+    links, f = p.links[k], p.link_numbers[k]
+    numbers = p.numbers[links[6] : links[6] + links[7]]
+    count = links[9] * links[10] * links[11]
+    table = p.tables[links[8] : links[8] + count].reshape((links[9], links[10], links[11]))
+    fx, fy = film_force(links[0], x, y, vx, vy, f[0] * w + f[1] * ring, numbers, table)
+    torque = 0.0
+    if links[5] >= 0:
+        eps2 = min((x * x + y * y) / (f[6] * f[6]), 1.0 - 1e-9)
+        shear = f[3] * (f[0] * w - f[2] * ring) / math.sqrt(1.0 - eps2)
+        # the two surfaces share the couple of the eccentric force
+        torque = f[2] * shear - 0.5 * (x * fy - y * fx)
+    return fx, fy, torque
+
+
+@compiled()
+def block_row(w: float, p: Plain) -> Array:
+    """Stiffness, damping and force of the linear supports at speed w."""
+    place = (w - p.block_low) / p.block_step
+    index = min(max(int(place), 0), p.block_table.shape[0] - 1)
+    s = place - index
+    c = p.block_table[index]
+    return c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+
+
+@compiled()
+def explicit_force(t: float, phi: float, w: float, alpha: float, p: Plain) -> Array:
+    """Forces (n,) that do not depend on the motion: constant ones, unbalance, loads."""
+    force = p.constant.copy()
+    cos, sin = math.cos(phi), math.sin(phi)
+    for k in range(p.unbalance_start.size):
+        if t >= p.unbalance_start[k]:
+            # Re(u (w^2 - i alpha) exp(i phi))
+            a, b = w * w * cos + alpha * sin, w * w * sin - alpha * cos
+            for i in range(force.size):
+                force[i] += p.unbalance_real[k, i] * a - p.unbalance_imag[k, i] * b
+    for k in range(p.load_times.shape[0]):
+        if p.load_times[k, 1] <= t < p.load_times[k, 2]:
+            a, b = math.cos(p.load_times[k, 0] * t), math.sin(p.load_times[k, 0] * t)
+            for i in range(force.size):
+                force[i] += p.load_real[k, i] * a - p.load_imag[k, i] * b
+    return force
+
+
+@compiled()
+def force_on(t: float, q: Array, v: Array, phi: float, w: float, alpha: float, p: Plain) -> Array:
+    """All forces (n,) but the inertia's: M q'' is this."""
+    force = explicit_force(t, phi, w, alpha, p)
+    force -= p.damping @ v + p.stiffness @ q
+    if p.gyroscopic.shape[0] > 0:
+        force -= w * (p.gyroscopic @ v + p.circulatory @ q)
+    m = p.block.size
+    if m > 0:
+        row = block_row(w, p)
+        for i in range(m):
+            total = row[2 * m * m + i]
+            for j in range(m):
+                total -= row[i * m + j] * q[p.block[j]] + row[(m + i) * m + j] * v[p.block[j]]
+            force[p.block[i]] += total
+    for k in range(p.links.shape[0]):
+        x, y, vx, vy, ring = link_place(k, q, v, p)
+        fx, fy, torque = link_force(k, x, y, vx, vy, ring, w, p)
+        _add(force, p.links[k], fx, fy, torque)
+    return force
+
+
+@compiled()
+def _add(force: Array, link: NDArray[np.int64], fx: float, fy: float, torque: float) -> None:
+    force[link[1]] += fx
+    force[link[2]] += fy
+    if link[3] >= 0:
+        force[link[3]] -= fx
+        force[link[4]] -= fy
+    if link[5] >= 0:
+        force[link[5]] += torque
+
+
+@compiled()
+def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[Array, Array]:
+    """Stiffness and damping matrix (n, n) of all forces at a motion: minus their derivatives."""
+    stiffness, damping = p.stiffness.copy(), p.damping.copy()
+    if p.gyroscopic.shape[0] > 0:
+        stiffness += w * p.circulatory
+        damping += w * p.gyroscopic
+    m = p.block.size
+    if m > 0:
+        row = block_row(w, p)
+        for i in range(m):
+            for j in range(m):
+                stiffness[p.block[i], p.block[j]] += row[i * m + j]
+                damping[p.block[i], p.block[j]] += row[(m + i) * m + j]
+    moved = np.empty(5)
+    for k in range(p.links.shape[0]):
+        link = p.links[k]
+        place = np.array(link_place(k, q, v, p))
+        length = 1e-6 * scale[link[1]]
+        rate = max(abs(w), 1.0)
+        for j in range(5):
+            if j == 4 and link[5] < 0:
+                continue
+            # of a ring the speed moves the force as that of the shaft does
+            step = length if j < 2 else (length * rate if j < 4 else 1e-6 * rate)
+            moved[:] = place
+            moved[j] = place[j] + step
+            up = link_force(k, moved[0], moved[1], moved[2], moved[3], moved[4], w, p)
+            moved[j] = place[j] - step
+            low = link_force(k, moved[0], moved[1], moved[2], moved[3], moved[4], w, p)
+            target = stiffness if j < 2 else damping
+            for i in range(3):
+                slope = (low[i] - up[i]) / (2.0 * step)
+                row_in = link[1 + i] if i < 2 else link[5]
+                if row_in < 0:
+                    continue
+                row_out = link[3 + i] if i < 2 else -1
+                column = link[1 + j % 2] if j < 4 else link[5]
+                other = link[3 + j % 2] if j < 4 else -1
+                target[row_in, column] += slope
+                if row_out >= 0:
+                    target[row_out, column] -= slope
+                if other >= 0:
+                    target[row_in, other] -= slope
+                    if row_out >= 0:
+                        target[row_out, other] += slope
+    return stiffness, damping
+
+
+@compiled()
+def least_film(q: Array, v: Array, p: Plain) -> float:
+    """Smallest of the links' films less what they may not fall below [m]."""
+    least = math.inf
+    for k in range(p.links.shape[0]):
+        if p.links[k, 0] != STOP:
+            x, y, _, _, _ = link_place(k, q, v, p)
+            f = p.link_numbers[k]
+            least = min(least, f[6] - f[7] - math.hypot(x, y))
+    return least
+
+
+def translation_columns(
+    size: int, places: Sequence[tuple[int, int]], amounts: Sequence[complex]
+) -> ComplexArray:
+    """Turning forces (size,): amount (1, -i) on x and y of each place."""
+    found = np.zeros(size, dtype=complex)
+    for (x, y), amount in zip(places, amounts, strict=True):
+        found[x] += amount
+        found[y] -= 1j * amount
+    return found

@@ -1,0 +1,297 @@
+"""A machine in three dimensions: shaft and discs whirling in time, what carries them, orbits.
+
+Lengths are millimetres: along the shaft from its left end, to the side, and upwards. What moves is
+magnified, the same for all of a machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+from numpy.typing import NDArray
+
+from ...files.machine import MachineFile
+from ...orbit import Orbit
+from ...orbit.motion import Motion, Station
+from ...rotor import Beam
+from .film_view import BACKGROUND
+from .runs import ALARM, LINE, TEXT, TIME, Run, run_index, thin
+from .surfaces import MILLI, cylinder
+
+Array = NDArray[np.float64]
+
+ROOT = "machine"
+_FRAMES_PER_TURN = 16
+_FRAMES = 16_000
+"""At most, of one run."""
+_SHOWN_SWING = 0.3
+"""Largest deflection from the static line as drawn, over the largest radius of the shaft."""
+_CHUNK = 4_096
+_STEEL, _DISC, _MARK, _HOUSING = (170, 178, 190), (86, 140, 190), (230, 159, 0), (110, 120, 130)
+
+
+def first_orbit(motion: Motion) -> Orbit:
+    """Orbit of a machine's first station, for the timelines."""
+    return motion.orbit(motion.stations[0].name)
+
+
+def shaft_spans(beam: Beam, nodes: Array) -> Iterator[tuple[int, int, float]]:
+    """First and last node and outer radius [m] of the stretches of equal radius."""
+    radii = []
+    for left, right in pairwise(nodes):
+        middle = np.array([0.5 * (left + right)])
+        here = [
+            float(beam.at(middle, section)[1][0])
+            for section in beam.sections
+            if beam.span(section)[0] <= middle[0] <= beam.span(section)[1]
+        ]
+        radii.append(max(here))
+    first = 0
+    for i in range(1, len(radii) + 1):
+        if i == len(radii) or abs(radii[i] - radii[first]) > 1e-6 * radii[first]:
+            yield first, i, radii[first]
+            first = i
+
+
+def disc_size(mass: float, polar: float, transverse: float, shaft: float) -> tuple[float, float]:
+    """Radius and width [m] of a disc that has this mass and these inertias."""
+    if polar <= 0.0:
+        return 1.4 * shaft, 0.7 * shaft
+    radius = float(np.sqrt(2.0 * polar / mass))
+    width = float(np.sqrt(max(12.0 * transverse / mass - 3.0 * radius**2, 0.0)))
+    return max(radius, 1.1 * shaft), float(np.clip(width, 0.15 * radius, 2.0 * radius))
+
+
+@dataclass(frozen=True)
+class MachineRun:
+    """A machine's motion, ready to be shown.
+
+    machine : Its rotor as drawn.
+    motion : All samples; frames are taken from them.
+    run : Motion of its first station, for the timelines.
+    """
+
+    machine: MachineFile
+    motion: Motion
+    run: Run
+
+    @cached_property
+    def rows(self) -> NDArray[np.intp]:
+        """Samples that are shown."""
+        count = self.motion.t.size
+        step = max(1, self.motion.problem.samples_per_revolution // _FRAMES_PER_TURN)
+        rows = np.arange(0, count, step)
+        return rows[thin(rows.size, _FRAMES)]
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Places of the nodes from the left end [m]."""
+        return np.array([node.position for node in self._rotor.nodes])
+
+    @cached_property
+    def _rotor(self):
+        return self.machine.rotor_with_unbalance()
+
+    @cached_property
+    def spans(self) -> list[tuple[int, int, float]]:
+        """Stretches of the shaft; see `shaft_spans`."""
+        return list(shaft_spans(self.machine.rotor.beam, self.nodes))
+
+    @property
+    def _side(self) -> float:
+        return 1.0 if self.machine.rotor.beam.clockwise else -1.0
+
+    def _swing(self, first: int, rows: NDArray[np.intp] | slice) -> tuple[Array, Array]:
+        """X and y [m] of every node's unknown `first` and the next along the run."""
+        system = self.motion.problem.system
+        places = self._rotor.first_unknown + first
+        x, y = (
+            self.motion.q[rows] @ system.basis[places + axis].T + system.offset[places + axis]
+            for axis in (0, 1)
+        )
+        return x, y
+
+    @cached_property
+    def magnification(self) -> float:
+        """How many times larger than true displacements are drawn."""
+        x, y = self._swing(0, slice(None, None, max(1, self.motion.t.size // 4_000)))
+        largest = float(np.hypot(x - x.mean(axis=0), y - y.mean(axis=0)).max())
+        thickest = max(radius for _, _, radius in self.spans)
+        return float(f"{_SHOWN_SWING * thickest / max(largest, 1e-12):.1g}")
+
+    def points(self, rows: NDArray[np.intp]) -> Array:
+        """Nodes (rows, nodes, 3) as drawn [mm]."""
+        x, y = self._swing(0, rows)
+        return self._drawn(np.broadcast_to(self.nodes, x.shape), x, y)
+
+    def _drawn(self, z: Array, x: Array, y: Array) -> Array:
+        scale = self.magnification * MILLI
+        return np.stack([z * MILLI, self._side * scale * y, -scale * x], axis=-1)
+
+    def turns(self, node: int, rows: NDArray[np.intp]) -> Array:
+        """Attitude (rows, 4) of a disc as a quaternion: its tilt as drawn, and its rotation."""
+        tilt_x, tilt_y = self._swing(2, rows)
+        # slope of the axis: dx/ds = theta_y, dy/ds = -theta_x, s along the rotation vector
+        up, side = -tilt_y[:, node], -tilt_x[:, node]
+        half = 0.5 * self.magnification
+        axis = np.stack([np.zeros_like(up), -self._side * up, side], axis=-1) * half * self._side
+        tilt = np.concatenate([np.clip(axis, -0.4, 0.4), np.ones((len(rows), 1))], axis=-1)
+        tilt /= np.linalg.norm(tilt, axis=1)[:, None]
+        angle = 0.5 * self._side * self.motion.angle[rows]
+        sin, cos = np.sin(angle), np.cos(angle)
+        x, y, z, w = tilt.T
+        # tilt after rotation about the shaft's axis
+        parts = (w * sin + x * cos, y * cos + z * sin, z * cos - y * sin, w * cos - x * sin)
+        return np.stack(parts, axis=-1)
+
+    def index(self, rows: NDArray[np.intp]) -> list[rr.TimeColumn]:
+        """Timelines at some samples of the motion."""
+        return run_index(self.run, rows)
+
+    def station_path(self, station: Station, rows: NDArray[np.intp]) -> Array:
+        """Shaft's centre (rows, 3) at a station, as drawn."""
+        x, y = self.motion.displacement(list(station.places))[rows].T
+        return self._drawn(np.full(x.shape, station.position), x, y)
+
+
+def log_machine(stream: rr.RecordingStream, shown: MachineRun) -> None:
+    """Write shaft, discs, bearings and orbits of a machine."""
+    _log_still(stream, shown)
+    for k, (first, last, radius) in enumerate(shown.spans):
+        entity = f"{ROOT}/shaft/{k}"
+        stream.log(
+            entity, rr.LineStrips3D.from_fields(radii=radius * MILLI, colors=_STEEL), static=True
+        )
+        for rows in _chunks(shown.rows):
+            strips = shown.points(rows)[:, first : last + 1].astype(np.float32)
+            stream.send_columns(entity, shown.index(rows), rr.LineStrips3D.columns(strips=strips))
+    thickest = max(radius for _, _, radius in shown.spans)
+    for i, disc in enumerate(shown.machine.rotor.beam.discs, start=1):
+        node = int(np.argmin(np.abs(shown.nodes - disc.at)))
+        entity = f"{ROOT}/discs/{_entity(disc.name or f'disc {i}')}"
+        size = disc_size(disc.mass, disc.polar_inertia, disc.transverse_inertia, thickest)
+        _log_disc(stream, entity, *size)
+        for rows in _chunks(shown.rows):
+            stream.send_columns(
+                entity,
+                shown.index(rows),
+                rr.Transform3D.columns(
+                    translation=shown.points(rows)[:, node].astype(np.float32),
+                    quaternion=shown.turns(node, rows).astype(np.float32),
+                ),
+            )
+    for station in shown.motion.stations:
+        if np.isfinite(station.position):
+            _log_path(stream, shown, station)
+
+
+def _chunks(rows: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
+    for start in range(0, rows.size, _CHUNK):
+        yield rows[start : start + _CHUNK]
+
+
+def _entity(name: str) -> str:
+    return "_".join(name.split()).replace("/", "_")
+
+
+def _log_disc(stream: rr.RecordingStream, entity: str, radius: float, width: float) -> None:
+    """Disc about the shaft's axis, one twelfth of it marked so that its rotation shows."""
+    vertices, triangles, normals = cylinder(radius * MILLI, 0.5 * width * MILLI)
+    turned = np.roll(vertices, 1, axis=1)  # its axis along the shaft
+    angle = np.arctan2(turned[:, 1], -turned[:, 2])
+    paint = np.where((np.abs(angle) < np.pi / 12.0)[:, None], [*_MARK, 255], [*_DISC, 255])
+    stream.log(
+        entity,
+        rr.Mesh3D(
+            vertex_positions=turned,
+            triangle_indices=triangles,
+            vertex_normals=np.roll(normals, 1, axis=1),
+            vertex_colors=paint.astype(np.uint8),
+        ),
+        static=True,
+    )
+
+
+def _log_still(stream: rr.RecordingStream, shown: MachineRun) -> None:
+    """Write bearings, the axis, names."""
+    stream.log(ROOT, rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    ends = [shown.nodes[0] * MILLI, shown.nodes[-1] * MILLI]
+    reach = 0.06 * (ends[1] - ends[0])
+    axis = [[ends[0] - reach, 0.0, 0.0], [ends[1] + reach, 0.0, 0.0]]
+    stream.log(
+        f"{ROOT}/axis", rr.LineStrips3D([axis], radii=rr.Radius.ui_points(0.7), colors=LINE),
+        static=True,
+    )  # fmt: skip
+    names = shown.machine.support_names
+    places, labels = [], []
+    for name, entry in zip(names, shown.machine.support, strict=True):
+        node = int(np.argmin(np.abs(shown.nodes - entry.at)))
+        shaft = max(r for first, last, r in shown.spans if first <= node <= last) * MILLI
+        inner, half, at = 1.35 * shaft, 0.5 * shaft, entry.at * MILLI
+        turn = np.linspace(0.0, 2.0 * np.pi, 73)
+        circles = [
+            np.column_stack([np.full(73, at + s * half), r * np.cos(turn), r * np.sin(turn)])
+            for s in (-1.0, 0.0, 1.0)
+            for r in (inner, 1.25 * inner)
+        ]
+        foot = [[[at, s * inner, -inner], [at, 1.5 * s * inner, -2.4 * inner]] for s in (-1.0, 1.0)]
+        stream.log(
+            f"{ROOT}/bearings/{_entity(name)}",
+            rr.LineStrips3D([*circles, *foot], radii=0.06 * shaft, colors=_HOUSING), static=True,
+        )  # fmt: skip
+        places.append([at, 0.0, 1.9 * inner])
+        labels.append(name)
+    thickest = max(radius for _, _, radius in shown.spans)
+    for i, disc in enumerate(shown.machine.rotor.beam.discs, start=1):
+        size = disc_size(disc.mass, disc.polar_inertia, disc.transverse_inertia, thickest)
+        places.append([disc.at * MILLI, 0.0, 1.25 * size[0] * MILLI])
+        labels.append(disc.name or f"disc {i}")
+    if places:
+        stream.log(
+            f"{ROOT}/names",
+            rr.Points3D(places, labels=labels, show_labels=True, radii=0.0, colors=TEXT),
+            static=True,
+        )
+
+
+def _log_path(stream: rr.RecordingStream, shown: MachineRun, station: Station) -> None:
+    """Write the path of the shaft's centre at a station: short pieces, of which a turn is shown."""
+    entity = f"{ROOT}/orbits/{_entity(station.name)}"
+    style = rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(1.5), colors=ALARM)
+    stream.log(entity, style, static=True)
+    for rows in _chunks(shown.rows):
+        before = shown.rows[np.maximum(np.searchsorted(shown.rows, rows) - 1, 0)]
+        ends = [shown.station_path(station, part) for part in (before, rows)]
+        strips = np.stack(ends, axis=1).astype(np.float32)
+        stream.send_columns(entity, shown.index(rows), rr.LineStrips3D.columns(strips=strips))
+
+
+def machine_view(shown: MachineRun) -> rrb.Spatial3DView:
+    """View of the machine from the side and a little above, the last turn of each orbit in red."""
+    beam = shown.machine.rotor.beam
+    length = beam.length * MILLI
+    turn = 2.0 * np.pi / max(float(np.abs(shown.motion.speed).max()), 1e-9)
+    now = rrb.TimeRangeBoundary.cursor_relative
+    trail = rrb.VisibleTimeRanges([rr.VisibleTimeRange(TIME, start=now(seconds=-turn), end=now())])
+    return rrb.Spatial3DView(
+        origin=f"/{ROOT}",
+        name=f"Rotor, displacements {shown.magnification:g} times",
+        background=BACKGROUND,
+        line_grid=False,
+        eye_controls=rrb.EyeControls3D(
+            position=[0.25 * length, -0.95 * length, 0.45 * length],
+            look_target=[0.5 * length, 0.0, -0.02 * length],
+            eye_up=[0.0, 0.0, 1.0],
+        ),
+        overrides={
+            f"/{ROOT}/orbits/{_entity(station.name)}": trail
+            for station in shown.motion.stations
+            if np.isfinite(station.position)
+        },
+    )
