@@ -214,20 +214,21 @@ class MotionSystem:
                 stiffness[place] += more_stiffness
                 damping[place] += more_damping
                 index = index[:0]
+        real = [np.array([u.real for _, u in self.unbalance]).reshape(-1, self.size),
+                np.array([u.imag for _, u in self.unbalance]).reshape(-1, self.size)]  # fmt: skip
         return Plain(
-            *(np.ascontiguousarray(a, dtype=float) for a in (
-                self.mass, np.linalg.inv(self.mass), damping, gyroscopic, stiffness, circulatory,
-                constant,
-            )),
-            np.array([start for start, _ in self.unbalance], dtype=float),
-            np.array([u.real for _, u in self.unbalance]).reshape(-1, self.size),
-            np.array([u.imag for _, u in self.unbalance]).reshape(-1, self.size),
-            np.array([[h.frequency, h.start, h.stop] for h in loads]).reshape(-1, 3),
-            np.array([h.amplitude.real for h in loads]) if loads else empty,
-            np.array([h.amplitude.imag for h in loads]) if loads else empty,
-            np.array(ints, dtype=np.int64).reshape(-1, 12),
-            np.array(floats, dtype=float).reshape(-1, 8),
-            np.concatenate(numbers), np.concatenate(tables), index, table, low, step,
+            mass=_array(self.mass), inverse=_array(np.linalg.inv(self.mass)),
+            damping=_array(damping), gyroscopic=_array(gyroscopic), stiffness=_array(stiffness),
+            circulatory=_array(circulatory), constant=_array(constant),
+            unbalance_start=np.array([start for start, _ in self.unbalance], dtype=float),
+            unbalance_real=real[0], unbalance_imag=real[1],
+            load_times=np.array([[h.frequency, h.start, h.stop] for h in loads]).reshape(-1, 3),
+            load_real=np.array([h.amplitude.real for h in loads]) if loads else empty,
+            load_imag=np.array([h.amplitude.imag for h in loads]) if loads else empty,
+            links=np.array(ints, dtype=np.int64).reshape(-1, 12),
+            link_numbers=np.array(floats, dtype=float).reshape(-1, 8),
+            numbers=np.concatenate(numbers), tables=np.concatenate(tables), block=index,
+            block_table=table, block_low=low, block_step=step,
         )  # fmt: skip
 
     def solved(self, q: Array, v: Array, speed: float) -> Array:
@@ -330,6 +331,10 @@ class Plain(NamedTuple):
     block_table: Array
     block_low: float
     block_step: float
+
+
+def _array(values: Array) -> Array:
+    return np.ascontiguousarray(values, dtype=float)
 
 
 @compiled()

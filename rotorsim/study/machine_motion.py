@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputError
 from ..files.machine import MachineFile
+from ..film.geometry import rotation
 from ..machine.machine import Machine, Mount
 from ..machine.peaks import node_at
 from ..machine.statics import reactions_by_statics, weight
