@@ -21,6 +21,7 @@ from .motion import static_position
 from .system import MotionSystem, Plain, derivatives, force_on
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 _HARMONICS = 7
 _MOMENTS = 64
@@ -132,11 +133,13 @@ class _Balance:
             if start == -math.inf:
                 turning += u * speed**2
         for k in range(h + 1):
-            small = whole.stiffness + 1j * k * frequency * whole.damping
-            small = small - (k * frequency) ** 2 * whole.mass
-            force = whole.constant if k == 0 else np.zeros(s)
-            if k == self.forced:
-                force = turning
+            small: ComplexArray = (
+                whole.stiffness - (k * frequency) ** 2 * whole.mass
+                + 1j * k * frequency * whole.damping
+            )  # fmt: skip
+            force: ComplexArray = turning if k == self.forced else np.zeros(s, dtype=complex)
+            if k == 0:
+                force = whole.constant.astype(complex)
             if k == 0:
                 matrix[0, :, 0], right[0] = small.real, force.real
                 continue
@@ -215,7 +218,7 @@ class _Balance:
             x, y = state[:n], state[n:]
             middle = np.linalg.solve(left, m @ y - 0.5 * step * (s @ x))
             state = np.concatenate([x + step * middle, 2.0 * middle - y])
-        values = np.linalg.eigvals(state)
+        values: ComplexArray = np.asarray(np.linalg.eigvals(state), dtype=complex)
         if self.forced is None:
             values = np.delete(values, np.argmin(np.abs(values - 1.0)))
         return values
@@ -240,7 +243,7 @@ def threshold(
         k, d = derivatives(rest, np.zeros_like(rest), speed, system.scale, plain)
         n = system.size
         matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-plain.inverse @ k, -plain.inverse @ d]])
-        values, shapes = np.linalg.eig(matrix)
+        values, shapes = (np.asarray(one, dtype=complex) for one in np.linalg.eig(matrix))
         growing = np.where(np.abs(values.imag) > 0.02 * speed, values.real, -np.inf)
         i = int(np.argmax(growing))
         shape = shapes[:n, i] if values[i].imag > 0.0 else shapes[:n, i].conj()
@@ -253,9 +256,10 @@ def threshold(
             low, high = before[0], float(speed)
             for _ in range(40):
                 middle = 0.5 * (low + high)
-                value, rest, shape = least_stable(middle, rest)
+                value, rest, _ = least_stable(middle, rest)
                 low, high = (low, middle) if value.real >= 0.0 else (middle, high)
-            return middle, value.imag, rest, shape
+            value, rest, shape = least_stable(high, rest)
+            return high, value.imag, rest, shape
         before, guess = (float(speed), value.real), rest
     return None
 
@@ -337,7 +341,7 @@ def _follow(
     speeds: tuple[float, float], points: int, hopf: float | None,
 ) -> Branch:  # fmt: skip
     """Predict along the tangent, correct across it; steps grow and shrink with Newton's work."""
-    free = balance.forced is None
+    free, turns = balance.forced is None, float(balance.forced or 1)
     h = balance.harmonics
     s = balance.held.size
 
@@ -362,8 +366,8 @@ def _follow(
             condition[:-2] = turned.ravel() / max(float(np.abs(turned).max()), 1e-12)
             ends.append(np.array([condition @ (z - reference)]))
         else:
-            condition[-2], condition[-1] = 1.0, -1.0 / balance.forced
-            ends.append(np.array([z[-2] - z[-1] / balance.forced]))
+            condition[-2], condition[-1] = 1.0, -1.0 / turns
+            ends.append(np.array([z[-2] - z[-1] / turns]))
         rows.append(condition[None])
         return np.concatenate(ends), np.vstack(rows)
 

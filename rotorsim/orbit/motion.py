@@ -424,7 +424,7 @@ class _Exact:
         forces = [(0.0, self.problem.plain.constant.astype(complex))]
         turning = [u for start, u in system.unbalance if start <= middle]
         if turning:
-            forces.append((w, w * w * np.sum(turning, axis=0)))
+            forces.append((w, np.asarray(w * w * np.sum(turning, axis=0), dtype=complex)))
         forces += [
             (load.frequency, load.amplitude)
             for load in system.loads
@@ -449,7 +449,7 @@ class _Exact:
         n = q.size
         key = a.tobytes()
         if key not in self.made:
-            self.made[key] = a, np.asarray(expm(a * self.period))
+            self.made[key] = a, np.asarray(expm(a * self.period), dtype=float)
         step = self.made[key][1]
 
         def state(t: float, q: Array, v: Array) -> Array:

@@ -171,7 +171,7 @@ class _Builder:
 
     def _model(self, names: Sequence[str]) -> str:
         wanted = self.settings.thermal_model
-        return wanted if wanted in names else names[-1]
+        return wanted if wanted is not None and wanted in names else names[-1]
 
     def _result(self, known: MachineResult | None) -> MachineResult | None:
         """Films over speed, where a support needs its coefficients or loads."""
@@ -514,7 +514,8 @@ class _Builder:
             places = list(self.rotor.planes[node_at(self.rotor, entry.at)])
             amplitude[places] = np.array(entry.force) * np.exp(1j * phase)
             frequency = getattr(entry, "frequency", 0.0)
-            found.append(Harmonic(basis.T @ amplitude, frequency, entry.start, entry.stop))
+            forces = np.asarray(basis.T @ amplitude, dtype=complex)
+            found.append(Harmonic(forces, frequency, entry.start, entry.stop))
         along = np.zeros((2, basis.shape[0]))
         for axis in (0, 1):
             along[axis, self.rotor.first_unknown + axis] = 1.0
@@ -526,7 +527,8 @@ class _Builder:
             base = settings.base_motion
             moved = np.array(base.displacement) * np.exp(1j * np.array(base.phase))
             force = base.frequency**2 * (mass @ (moved @ along))
-            found.append(Harmonic(basis.T @ force, base.frequency, base.start, base.stop))
+            forces = np.asarray(basis.T @ force, dtype=complex)
+            found.append(Harmonic(forces, base.frequency, base.start, base.stop))
         if settings.base_shock is not None:
             shock = settings.base_shock
             frequency = math.pi / shock.duration
@@ -971,7 +973,8 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
             return []
         frames.append(
             FilmFrame(
-                thermal_model=name, speed=float(motion.speed[row]), theta=theta, y=along,
+                thermal_model=name, speed=float(motion.speed[row]), theta=theta,
+                y=np.asarray(along, dtype=float),
                 pressure=pressure, temperature=None, max_temperature=None, journal_radius=radius,
                 radial_clearance=force.radial_clearance, centre=np.array([x, y]),
                 time=float(motion.t[row]),

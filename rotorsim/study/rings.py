@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
+from scipy.optimize import root_scalar
 
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError
@@ -120,7 +120,7 @@ def ring_state(ring: FloatingRing, load: Array, speed: float) -> RingState:
             f"the films' friction does not turn the ring under its load at {speed:g} rad/s",
             key="ring",
         )
-    turning = float(brentq(torque, low, high, xtol=1e-10 * speed))
+    turning = float(root_scalar(torque, bracket=(low, high), xtol=1e-10 * speed).root)
     return RingState(turning, *places(turning))
 
 
@@ -139,6 +139,10 @@ def ring_law(ring: FloatingRing, speed: float) -> Law:
     return law
 
 
+def _slopes(force: BearingForce, place: Array, speed: float) -> tuple[Array, Array]:
+    return linearize_force(force, float(place[0]), float(place[1]), speed)
+
+
 def ring_support(ring: FloatingRing, speeds: Array, loads: Array) -> Support:
     """Linear support of a floating-ring bearing, the ring with unknowns of its own.
 
@@ -149,12 +153,14 @@ def ring_support(ring: FloatingRing, speeds: Array, loads: Array) -> Support:
     matrices = np.zeros((2, speeds.size, 4, 4))
     for k, (speed, load) in enumerate(zip(speeds, loads, strict=True)):
         state = ring_state(ring, load, float(speed))
-        one = linearize_force(inner, *map(float, state.journal), float(speed) + state.ring_speed)
-        two = linearize_force(outer, *map(float, state.ring), state.ring_speed)
+        one = _slopes(inner, state.journal, float(speed) + state.ring_speed)
+        two = _slopes(outer, state.ring, state.ring_speed)
         relative = np.hstack([np.eye(2), -np.eye(2)])
         for kind in (0, 1):
             matrices[kind, k] = relative.T @ one[kind] @ relative
             matrices[kind, k, 2:, 2:] += two[kind]
     mass = np.zeros((speeds.size, 4, 4))
     mass[:, 2, 2] = mass[:, 3, 3] = ring.mass
-    return MatrixTable(speeds, *matrices, mass, unknowns=("x", "y", "ring_x", "ring_y"), coupled=2)
+    return MatrixTable(
+        speeds, matrices[0], matrices[1], mass, unknowns=("x", "y", "ring_x", "ring_y"), coupled=2
+    )
