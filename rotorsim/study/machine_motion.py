@@ -57,7 +57,7 @@ Array = NDArray[np.float64]
 
 _REVOLUTIONS = 60
 _MAX_SAMPLES = 1_000_000
-_REDUCTION = 1e-3
+_REDUCTION = 1e-4
 """Relative change of eigenvalues that a reduction may bring."""
 _SMALL = 48
 """Unknowns of a rotor that is not reduced."""
