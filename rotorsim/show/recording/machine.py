@@ -27,7 +27,7 @@ from ...text import markdown
 from ..figures.machine import disc_size, machine_campbell
 from . import surfaces
 from .charts import Chart
-from .film_view import log_films
+from .film_view import BACKGROUND, log_films
 from .runs import ALARM, LINE, TEXT, Run, speed_index, thin, time_index
 from .write import film_views, write_stream
 
@@ -49,7 +49,6 @@ _TURNS = 2
 _AROUND = 20
 _REACH = 0.09
 """Largest deflection as drawn, of the shaft's length."""
-_BACKGROUND = [13, 13, 16]
 _SHAFT, _SUPPORT = (150, 155, 165), (230, 159, 0)
 _WHIRL = {"forward": (86, 180, 233), "backward": (213, 94, 0)}
 
@@ -303,7 +302,7 @@ class _Show:
         """Of the rotor from the side, a little from above."""
         size = self.length
         return rrb.Spatial3DView(
-            origin=origin, name=name, line_grid=False, background=_BACKGROUND,
+            origin=origin, name=name, line_grid=False, background=BACKGROUND,
             eye_controls=rrb.EyeControls3D(
                 position=[0.5 * size, 0.3 * size, 0.85 * size],
                 look_target=[0.5 * size, 0.02 * size, 0.0], eye_up=[0.0, 1.0, 0.0],

@@ -17,9 +17,11 @@ import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from ...files.machine import MachineFile
+from ...model.shaft import Disc
 from ...orbit import Orbit
 from ...orbit.motion import Motion, Station
 from ...rotor import Beam
+from ..figures.machine import disc_size
 from .film_view import BACKGROUND
 from .runs import ALARM, LINE, TEXT, TIME, Run, run_index, thin
 from .surfaces import MILLI, cylinder
@@ -59,13 +61,11 @@ def shaft_spans(beam: Beam, nodes: Array) -> Iterator[tuple[int, int, float]]:
             first = i
 
 
-def disc_size(mass: float, polar: float, transverse: float, shaft: float) -> tuple[float, float]:
-    """Radius and width [m] of a disc that has this mass and these inertias."""
-    if polar <= 0.0:
-        return 1.4 * shaft, 0.7 * shaft
-    radius = float(np.sqrt(2.0 * polar / mass))
-    width = float(np.sqrt(max(12.0 * transverse / mass - 3.0 * radius**2, 0.0)))
-    return max(radius, 1.1 * shaft), float(np.clip(width, 0.15 * radius, 2.0 * radius))
+def _drawn_size(disc: Disc, beam: Beam, shaft: float) -> tuple[float, float]:
+    """Radius and width [m] of a disc as drawn; an added mass is a thick piece of the shaft."""
+    if disc.polar_inertia > 0.0 and disc.mass > 0.0:
+        return disc_size(disc, beam)
+    return 1.4 * shaft, 0.7 * shaft
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ def log_machine(stream: rr.RecordingStream, shown: MachineRun) -> None:
     for i, disc in enumerate(shown.machine.rotor.beam.discs, start=1):
         node = int(np.argmin(np.abs(shown.nodes - disc.at)))
         entity = f"{ROOT}/discs/{_entity(disc.name or f'disc {i}')}"
-        size = disc_size(disc.mass, disc.polar_inertia, disc.transverse_inertia, thickest)
+        size = _drawn_size(disc, shown.machine.rotor.beam, thickest)
         _log_disc(stream, entity, *size)
         for rows in _chunks(shown.rows):
             stream.send_columns(
@@ -249,7 +249,7 @@ def _log_still(stream: rr.RecordingStream, shown: MachineRun) -> None:
         labels.append(name)
     thickest = max(radius for _, _, radius in shown.spans)
     for i, disc in enumerate(shown.machine.rotor.beam.discs, start=1):
-        size = disc_size(disc.mass, disc.polar_inertia, disc.transverse_inertia, thickest)
+        size = _drawn_size(disc, shown.machine.rotor.beam, thickest)
         places.append([disc.at * MILLI, 0.0, 1.25 * size[0] * MILLI])
         labels.append(disc.name or f"disc {i}")
     if places:

@@ -382,7 +382,7 @@ def _machine(contents: RecordingContents, shown: MachineRun) -> _Part:
     if contents.campbell_chart is not None:
         charts.insert(0, contents.campbell_chart.view)
     right: list[_Part] = [_tabs(charts)] if charts else []
-    if films := _film_views(contents, flat=False):
+    if films := film_views(contents.films, flat=False):
         right.append(_tabs(films))
     right.append(_summary_view())
     series = series_of(contents.runs, (SPEED_SERIES, DISPLACEMENT))
