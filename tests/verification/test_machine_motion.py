@@ -162,10 +162,10 @@ def test_two_discs_on_short_films_against_unreduced_equations(tmp_path, rpm, unb
     machine = two_discs(FILMS, orbit, folder=tmp_path, unbalance=unbalance, elements=8)
     problem = motion_problem(machine)
     ours = simulate_motion(problem)
-    other = _Independent(machine, _speed(rpm), 512)
+    other = _Independent(machine, _speed(rpm), 1024)
     system, start = problem.system, problem.start
     begin = system.basis @ start + system.offset
-    path = other.run(begin[: other.rotor.size], 0.0 * begin[: other.rotor.size], 12, 512, 8)
+    path = other.run(begin[: other.rotor.size], 0.0 * begin[: other.rotor.size], 12, 1024, 16)
     film = ours.orbit("A")
     size = max(np.ptp(path[:, 2]), np.ptp(path[:, 3]))
     count = len(path)
