@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 _MATCH = 1e-6
 """Relative distance within which a value selects a tabulated one."""
+_SAME = 1e-5
+"""Of a variable's largest magnitude: what processors and libraries may change in its numbers."""
+_DIAGNOSTICS = ("residual", "iterations", "heat_imbalance")
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +115,23 @@ class CoefficientTable:
     def to_csv(self, path: str | Path) -> Path:
         """Write a CSV file that `from_csv` reads back (without further dimensions)."""
         return delimited.write(self.dataset, path)
+
+    def agrees_with(self, other: CoefficientTable) -> bool:
+        """Whether scenario, mesh, variables, verdicts and, to the solver's tolerance, numbers do.
+
+        How the solver got there (residuals, iterations) does not count.
+        """
+        mine, others = self.dataset, other.dataset
+        if any(mine.attrs.get(key) != others.attrs.get(key) for key in ("scenario", "mesh")):
+            return False
+        if {n: v.dims for n, v in mine.variables.items()} != {
+            n: v.dims for n, v in others.variables.items()
+        }:
+            return False
+        return all(
+            name in _DIAGNOSTICS or _alike(mine[name].values, others[name].values)
+            for name in mine.variables
+        )
 
     def _repr_html_(self) -> str:
         from .description import table_html_of
@@ -297,6 +317,15 @@ def _flatten(points: Iterable[Any]) -> Iterator[OperatingPoint]:
             yield from _flatten(item)
         else:
             yield item
+
+
+def _alike(one: np.ndarray, other: np.ndarray) -> bool:
+    if one.shape != other.shape:
+        return False
+    if one.dtype.kind not in "fiu" or other.dtype.kind not in "fiu":
+        return bool((one.astype(str) == other.astype(str)).all())
+    size = float(np.abs(other[np.isfinite(other)]).max(initial=0.0))
+    return bool(np.isclose(one, other, rtol=0.0, atol=_SAME * size, equal_nan=True).all())
 
 
 def _listing(values: np.ndarray) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections import Counter
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -175,8 +176,8 @@ def computed_table(
 ) -> tuple[list[OperatingPoint], CoefficientTable]:
     """Points and table of `scenario`, saved to `path`; a journal next to it until then.
 
-    While points have failed the journal stays, to be resumed from, and so does an older table
-    without such points.
+    A table there that agrees is left as it is. While points have failed the journal stays, to be
+    resumed from, and so does an older table without such points.
     """
     from ..study.sweep import Journal, as_table, sweep_points
     from .output import film_progress
@@ -203,13 +204,17 @@ def computed_table(
         )
     made = as_table(points, scenario)
     failed = sum(point.status is SolveStatus.FAILED for point in points)
-    if failed and _is_without_failures(path):
+    old = _table_at(path)
+    if failed and old is not None and not (old.dataset["status"] == str(SolveStatus.FAILED)).any():
         output.warn(
             f"{failed} points failed: {path} is left as it was, and the same command tries them "
             f"again; the others are kept in {journal}"
         )
         return points, made
-    made.save(path)
+    if old is not None and made.agrees_with(old):
+        output.note(f"{path} holds these numbers already and is left as it was")
+    else:
+        made.save(path)
     if failed:
         output.warn(f"{failed} points failed: the same command tries them again")
     else:
@@ -218,15 +223,13 @@ def computed_table(
     return points, made
 
 
-def _is_without_failures(path: Path) -> bool:
-    """Whether there is a table of which no point failed."""
+def _table_at(path: Path) -> CoefficientTable | None:
+    """The table there, if a usable one is."""
     from ..bearing.table import CoefficientTable
 
-    try:
-        status = CoefficientTable.load(path).dataset["status"].values
-    except TableError:
-        return False
-    return not (status == str(SolveStatus.FAILED)).any()
+    with suppress(TableError):
+        return CoefficientTable.load(path)
+    return None
 
 
 def _report_points(output: Output, points: Sequence[OperatingPoint]) -> int:

@@ -20,6 +20,7 @@ from command_line import CommandLine, strict
 from scenario_texts import SMALL
 
 import rotorsim
+import rotorsim as rs
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(rotorsim.__file__).parents[1]
@@ -414,6 +415,29 @@ def test_failed_points_cost_neither_the_journal_nor_an_older_table(
     assert f"{Path('coefficients/quick.nc')} is left as it was" in done.stderr
     assert table.read_bytes() == good
     assert journal.exists()
+
+
+def test_a_table_that_agrees_is_left_as_it_is(here: CommandLine, tmp_path):
+    """So that a run of a shipped scenario leaves the checkout clean."""
+    scenario = tmp_path / "quick.toml"
+    table = tmp_path / "coefficients/quick.nc"
+    scenario.write_text(QUICK, encoding="utf-8")
+    assert here("table", scenario).returncode == 0
+    first = table.read_bytes()
+    old = rs.CoefficientTable.load(table)
+    for change, kept in ((1.0 + 1e-7, True), (1.0 + 1e-3, False)):
+        moved = old.dataset.assign(kxy=old.dataset["kxy"] * change).assign_attrs(date="1999")
+        rs.CoefficientTable(moved).save(table)
+        done = here("table", scenario)
+        assert ("holds these numbers already" in done.stderr) is kept
+        assert (rs.CoefficientTable.load(table).dataset.attrs["date"] == "1999") is kept
+    for key in ("mesh", "scenario"):
+        other = rs.CoefficientTable(old.dataset.assign_attrs({key: "another"}))
+        assert not old.agrees_with(other)
+    assert not old.agrees_with(rs.CoefficientTable(old.dataset.drop_vars("moment_x")))
+    scenario.write_text(QUICK + "\n# a comment\n", encoding="utf-8")
+    assert "holds these" not in here("table", scenario).stderr
+    assert table.read_bytes() != first
 
 
 @pytest.fixture
