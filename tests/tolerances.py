@@ -22,6 +22,9 @@ LUND_THOMSEN_ABSOLUTE = 0.06
 LUND_THOMSEN_SOMMERFELD = 0.02
 LUND_THOMSEN_ATTITUDE_DEG = 0.5
 
+NICHOLAS_SOMMERFELD, NICHOLAS_ECCENTRICITY, NICHOLAS_THRESHOLD = 0.03, 0.02, 0.08
+"""The source prints two digits, and not the viscosity."""
+
 OCVIRK = 0.004
 """The short-bearing theory's own error at L/D = 0.02, and at 0.05 up to eps = 0.5."""
 

@@ -114,6 +114,9 @@ def dissipation(
         operator.fixed, operator.area, operator.dx, operator.dy, thickness, layers.f0,
         flow.step, flow.liquid_fraction, surface_speed, heating,
     )  # fmt: skip
+    if operator.steps is not None:
+        power, at = operator.steps.half_losses(flow.liquid_fraction >= 1.0), operator.steps.at[1:]
+        np.add.at(heating[2], at, power / layers.f2[at])
     return heating
 
 

@@ -76,7 +76,7 @@ def film_flow(state: FilmState) -> FilmFlow:
         return FilmFlow(step, poiseuille, couette, shared, inlet, flux, solution.liquid, everything)
     fraction, fresh_fraction = np.ones(shape[1:]), np.ones(shape[1:])
     _carry(
-        operator.interior, operator.face_thickness, operator.couette, operator.fixed,
+        operator.interior, operator.couette, operator.fixed,
         state.center_thickness, layers.g, solution.full, surface_speed, operator.dy,
         poiseuille, couette, shared, inlet, flux, fraction, fresh_fraction,
     )  # fmt: skip
@@ -121,7 +121,7 @@ def _pressure_part(
 
 @kernel
 def _carry(
-    interior, face_h, operator_couette, fixed, h, g, full, speed, dy, poiseuille, couette, shared,
+    interior, operator_couette, fixed, h, g, full, speed, dy, poiseuille, couette, shared,
     inlet, flux, fraction, fresh_fraction,
 ):  # fmt: skip
     n, m = full.shape
@@ -144,14 +144,20 @@ def _carry(
                 shared[0, i, j] = False  # the column before passes on its own profile
             else:
                 inlet[i, j] = carried or not interior[0, i, j]
-                couette[0, i, j] = speed * face_h[0, i, j] * dy[j]
+                open_share = 1.0 - g[i, j]
+                if interior[0, i, j]:
+                    open_share = 0.5 * (open_share + 1.0 - g[before, j])
+                couette[0, i, j] = operator_couette[0, i, j] / open_share
                 flux[0, i, j] += operator_couette[0, i, j]
             if interior[0, i, j] and s > 0:
                 fresh_fraction[i, j] = fresh_fraction[before, j]
                 if carried and full[i, j] and flux[0, i, j] > flux[1, before, j]:
                     fresh_fraction[i, j] *= flux[1, before, j] / flux[0, i, j]
             if full[i, j]:
-                couette[1, i, j] = speed * face_h[1, i, j] * dy[j]
+                open_share = 1.0 - g[i, j]
+                if interior[1, i, j]:
+                    open_share = 0.5 * (open_share + 1.0 - g[i + 1 if i < n - 1 else 0, j])
+                couette[1, i, j] = operator_couette[1, i, j] / open_share
                 flux[1, i, j] += operator_couette[1, i, j]
                 continue
             through = flux[0, i, j] + flux[2, i, j] - flux[3, i, j]

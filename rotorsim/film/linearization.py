@@ -27,7 +27,7 @@ from scipy.linalg import block_diag
 from .flow_law import COUETTE_POWER, POISEUILLE_POWER
 from .geometry import CENTER, Displacements, turnings
 from .kernels import kernel
-from .operator import film_operator, neighbour
+from .operator import WEST, StepFaces, film_operator, neighbour
 from .problem import FilmState
 from .rupture import Factor
 from .thd import ThermalFilm, solve_thermal_film
@@ -165,12 +165,49 @@ def _displacement_sources(state: FilmState, shapes: Array) -> Array:
     sources = np.zeros((len(shapes), *operator.area.shape))
     rates = np.empty((3, 0, 0)) if layers.rates is None else layers.rates
     returned = getattr(state.solution.factor, "returned", np.zeros((2, len(operator.dx))))
+    conductance, couette = operator.conductance, operator.couette
+    if operator.steps is not None:
+        conductance, couette = conductance.copy(), couette.copy()
+        conductance[operator.steps.at] = 0.0
+        along = operator.steps.at[0] < 2
+        couette[tuple(index[along] for index in operator.steps.at)] = 0.0
+        _add_step_sources(state, operator.steps, shapes, sources)
     _sources(
-        operator.conductance, operator.interior, operator.fixed_pressure, operator.face_thickness,
-        operator.couette, operator.fixed, state.solution.raw, shapes, layers.f2, layers.f2_axial,
+        conductance, operator.interior, operator.fixed_pressure, operator.face_thickness,
+        couette, operator.fixed, state.solution.raw, shapes, layers.f2, layers.f2_axial,
         layers.g, rates, state.center_thickness, returned, sources,
     )  # fmt: skip
     return sources
+
+
+def _add_step_sources(state: FilmState, steps: StepFaces, shapes: Array, sources: Array) -> None:
+    """What displacements change at steps, where either side has its own film thickness."""
+    layers, along, pressure = state.layers, steps.at[0] < 2, state.solution.raw
+    share, changes = steps.share, []
+    for place in (steps.at, steps.beyond):
+        at = place[1:]
+        moved = shapes[:, 1 + place[0], at[0], at[1]] / state.thickness[1 + place[0], at[0], at[1]]
+        conducted, drawn = POISEUILLE_POWER * moved, COUETTE_POWER * moved
+        if layers.rates is not None:
+            centre = shapes[:, CENTER, at[0], at[1]] / state.center_thickness[at]
+            conducted = (
+                conducted + np.where(along, layers.rates[0][at], layers.rates[1][at]) * centre
+            )
+            drawn = drawn + layers.rates[2][at] * centre
+        changes.append((conducted, drawn))
+    (own, own_drawn), (other, other_drawn) = changes
+    driven = steps.conductance * (pressure[steps.beyond[1:]] - pressure[steps.at[1:]])
+    change = share * steps.own_couette * own_drawn
+    change = change + (1.0 - share) * steps.other_couette * other_drawn
+    gain = (steps.own_couette - steps.other_couette) * share * (1.0 - share)
+    change = change + gain * (other - own)
+    # A ruptured film's Couette flow carries the liquid fraction.
+    clipped = tuple(np.where(along, index, 0) for index in steps.at)
+    carried = state.operator.couette[clipped] / np.where(along, steps.couette, 1.0)
+    inward = np.where(steps.at[0] == WEST, 1.0, -1.0) * along * carried
+    total = inward * change + driven * (share * own + (1.0 - share) * other)
+    for d in range(len(shapes)):
+        np.add.at(sources[d], steps.at[1:], total[d])
 
 
 @kernel

@@ -37,6 +37,8 @@ def friction_force(state: FilmState, fraction: Array) -> float:
     off = 0.0 if turbulent is None else state.layers.g - turbulent.g_tangent
     # Couette flow = U h (1 - G) width, rise over the spacing: int h p' (1 - G) dA = flow rise/U
     driven = np.sum(share * operator.couette * rise * film) / problem.surface_speed
+    if operator.steps is not None:
+        driven += operator.steps.half_losses(fraction >= 1.0).sum() / problem.surface_speed
     # A turbulent film's pressure meets the tangent viscosity: tau = h p' (1 - G_t) + U/(h F_0).
     driven += np.sum(share * operator.face_thickness[:2] * rise * film * operator.dy * off)
     dragged = np.sum(

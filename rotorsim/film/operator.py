@@ -23,6 +23,8 @@ from .mesh import FilmMesh
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 WEST, EAST, SOUTH, NORTH = 0, 1, 2, 3
+_STEP = 1e-6
+"""Relative difference of the film thickness on both sides of a face that counts as a step."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,7 @@ class FilmOperator:
     fixed : (n, m) bool array. Cells of grooves: the pressure is `fixed_pressure[WEST]` there.
     area : (n, m) array [m2]
     dx, dy : (n,) and (m,) arrays. Cell lengths [m].
+    steps : Faces at which the film thickness steps; None without any.
     """
 
     conductance: Array
@@ -52,6 +55,50 @@ class FilmOperator:
     area: Array
     dx: Array
     dy: Array
+    steps: StepFaces | None = None
+
+
+@dataclass(frozen=True)
+class StepFaces:
+    """Faces between cells of different film thickness, once from either side.
+
+    The flow through both half cells is the same: U h (1 - G) less h^3 F_2 times the gradient, with
+    the pressure on the face between. That eliminates the face's pressure.
+
+    at, beyond : (face, i, j) of the cell and of the one behind the face.
+    own, other : Conductance of the half cells [m3/(s Pa)].
+    own_couette, other_couette : U h (1 - G) (face length) of either side [m3/s]; 0 along the axis.
+    """
+
+    at: tuple[NDArray[np.intp], ...]
+    beyond: tuple[NDArray[np.intp], ...]
+    own: Array
+    other: Array
+    own_couette: Array
+    other_couette: Array
+
+    @property
+    def share(self) -> Array:
+        """Weight of the own side's flow: the other half cell's part of both conductances."""
+        return self.other / (self.own + self.other)
+
+    @property
+    def conductance(self) -> Array:
+        """Of both half cells in a row [m3/(s Pa)]."""
+        return self.own * self.share
+
+    @property
+    def couette(self) -> Array:
+        """Flow without a pressure difference between the cells [m3/s]."""
+        return self.own_couette * self.share + self.other_couette * (1.0 - self.share)
+
+    def half_losses(self, full: Flags) -> Array:
+        """Half the power that pressure on the face itself costs [W], where both cells are full.
+
+        What the Couette flows of both sides differ by flows off against both half cells.
+        """
+        power = 0.5 * (self.own_couette - self.other_couette) ** 2 / (self.own + self.other)
+        return np.where(full[self.at[1:]] & full[self.beyond[1:]], power, 0.0)
 
 
 @dataclass(frozen=True)
@@ -145,10 +192,25 @@ def film_operator(
     shape = topology.interior.shape
     conductance, face_thickness = np.empty(shape), np.empty(shape)
     couette = np.empty((2, *shape[1:]))
-    _assemble(
+    stepped = _assemble(
         thickness[1:], layers.f2, layers.f2_axial, layers.g, topology.interior, topology.spacing,
         topology.dx, topology.dy, surface_speed, conductance, face_thickness, couette,
     )  # fmt: skip
+    steps = None
+    if stepped:
+        steps = _step_faces(topology, thickness[1:], layers, surface_speed)
+        conductance[steps.at] = steps.conductance
+        along = steps.at[0] < 2
+        couette[tuple(index[along] for index in steps.at)] = steps.couette[along]
+        # The thickness at which the mean F_2 of both sides conducts as much.
+        here, there = steps.at[1:], steps.beyond[1:]
+        mobility = np.where(
+            along, layers.f2[here] + layers.f2[there],
+            layers.f2_axial[here] + layers.f2_axial[there],
+        )  # fmt: skip
+        width = np.where(along, topology.dy[here[1]], topology.dx[here[0]])
+        cubed = steps.conductance * topology.spacing[steps.at] / (0.5 * mobility * width)
+        face_thickness[steps.at] = np.cbrt(cubed)
     return FilmOperator(
         conductance=conductance,
         interior=topology.interior,
@@ -160,7 +222,44 @@ def film_operator(
         area=topology.area,
         dx=topology.dx,
         dy=topology.dy,
+        steps=steps,
     )
+
+
+def _beyond(sides: Array) -> Array:
+    """What stands on the other side of each face, (4, n, m)."""
+    return np.stack(
+        [
+            np.roll(sides[EAST], 1, axis=0),
+            np.roll(sides[WEST], -1, axis=0),
+            np.roll(sides[NORTH], 1, axis=1),
+            np.roll(sides[SOUTH], -1, axis=1),
+        ]
+    )
+
+
+def _step_faces(
+    topology: FaceTopology, sides: Array, layers: LayerIntegrals, surface_speed: float
+) -> StepFaces:
+    _, n, m = sides.shape
+    behind = _beyond(sides)
+    stepped = topology.interior & (np.abs(sides - behind) > _STEP * (sides + behind))
+    at = np.nonzero(stepped)
+    face, i, j = at
+    k = (i + np.array([-1, 1, 0, 0])[face]) % n
+    q = np.clip(j + np.array([0, 0, -1, 1])[face], 0, m - 1)
+    along = face < 2
+    width = np.where(along, topology.dy[j], topology.dx[i])
+
+    def half(h: Array, row: NDArray[np.intp], column: NDArray[np.intp]) -> tuple[Array, Array]:
+        mobility = np.where(along, layers.f2[row, column], layers.f2_axial[row, column])
+        reach = 0.5 * np.where(along, topology.dx[row], topology.dy[column])
+        drawn = surface_speed * h * (1.0 - layers.g[row, column]) * width
+        return h**POISEUILLE_POWER * mobility * width / reach, np.where(along, drawn, 0.0)
+
+    own, own_couette = half(sides[at], i, j)
+    other, other_couette = half(behind[at], k, q)
+    return StepFaces(at, (face ^ 1, k, q), own, other, own_couette, other_couette)
 
 
 @kernel
@@ -181,6 +280,7 @@ def _assemble(
     couette,
 ):  # fmt: skip
     n, m = f2.shape
+    stepped = False
     for i in range(n):
         for j in range(m):
             for face in range(4):
@@ -191,7 +291,9 @@ def _assemble(
                 mobility = f2[i, j] if along else f2_axial[i, j]
                 open_share = 1.0 - g[i, j]
                 if interior[face, i, j]:
-                    h = 0.5 * (h + sides[face ^ 1, k, q])
+                    there = sides[face ^ 1, k, q]
+                    stepped = stepped or abs(h - there) > _STEP * (h + there)
+                    h = 0.5 * (h + there)
                     mobility = 0.5 * (mobility + (f2[k, q] if along else f2_axial[k, q]))
                     open_share = 0.5 * (open_share + 1.0 - g[k, q])
                 thickness[face, i, j] = h
@@ -200,3 +302,4 @@ def _assemble(
                 )
                 if along:
                     couette[face, i, j] = surface_speed * h**COUETTE_POWER * open_share * width
+    return stepped

@@ -4,7 +4,7 @@ SI units throughout (Pa, m, s, kg, K, rad). Angles in the load frame: from the s
 positive in the direction of rotation.
 """
 
-from .bearing import Arc, Bearing, Feed, Groove
+from .bearing import Arc, Bearing, Feed, Groove, Pocket
 from .case import Case
 from .lubricant import ExponentialViscosity, Lubricant, ViscosityLaw, WaltherViscosity
 from .operating import EccentricityTarget, LoadTarget, Target
@@ -55,6 +55,7 @@ __all__ = [
     "Pad",
     "PadInertia",
     "Pivot",
+    "Pocket",
     "RigidPivot",
     "RupturedFriction",
     "ShaftModel",

@@ -27,6 +27,8 @@ from .entries import (
 )
 from .pads import FULL_TURN, Pad, check_order, gaps
 
+Array = NDArray[np.float64]
+
 
 def angle_between(theta: ArrayLike, other: float) -> NDArray[np.float64]:
     """Angle from `other` to `theta`, the short way round: -pi to pi [rad]."""
@@ -107,6 +109,60 @@ class Groove:
             "groove.end_land",
             self.end_land,
         )
+
+
+@dataclass(frozen=True)
+class Pocket:
+    """A part of the bore that is deeper: pressure dam, relief track, Rayleigh step, taper, pocket.
+
+    Where pockets overlap the deepest counts.
+
+    start, end : Angles from the load line [rad], `end` ahead of `start`; a full turn at most.
+    depth : At its start, in its middle plane [m].
+    depth_at_end : At its end, straight between [m]; None: as at its start.
+    length : Axial length [m]; None: the bearing's.
+    at : Its middle plane, from the bearing's along the rotation vector [m].
+    depth_at_edge : At its axial edges, straight from the middle plane [m]; None: no axial taper.
+    """
+
+    start: Annotated[Angle, Example("10 deg")]
+    end: Angle
+    depth: Annotated[float, Quantity("length", "60 um", "not_negative")]
+    depth_at_end: Annotated[float | None, Quantity("length", "60 um", "not_negative")] = None
+    length: Length | None = None
+    at: Annotated[float, Quantity("length", "0 mm", "any")] = 0.0
+    depth_at_edge: Annotated[float | None, Quantity("length", "60 um", "not_negative")] = None
+
+    def __post_init__(self) -> None:
+        check(self, "pocket")
+        _require(
+            1e-6 < self.end - self.start <= FULL_TURN + 1e-9,
+            "a pocket must end after it starts and span at most 360 deg",
+            "pocket.end",
+            self.end,
+        )
+
+    @property
+    def is_ring(self) -> bool:
+        """Whether it runs all the way round."""
+        return self.end - self.start > FULL_TURN - 1e-6
+
+    def reach(self, bearing_length: float) -> tuple[float, float]:
+        """Axial edges [m], from the bearing's mid-plane."""
+        half = 0.5 * (bearing_length if self.length is None else self.length)
+        return max(self.at - half, -0.5 * bearing_length), min(self.at + half, 0.5 * bearing_length)
+
+    def deepening(self, theta: Array, y: Array, bearing_length: float) -> Array:
+        """Depth [m] at angles [rad] and axial places [m], 0 outside."""
+        along = (theta - self.start) % FULL_TURN / (self.end - self.start)
+        half = 0.5 * (bearing_length if self.length is None else self.length)
+        aside = np.abs(y - self.at) / half
+        last = self.depth if self.depth_at_end is None else self.depth_at_end
+        depth = self.depth + (last - self.depth) * along
+        if self.depth_at_edge is not None:
+            depth = depth + (self.depth_at_edge - self.depth) * aside
+        inside = ((along < 1.0) | self.is_ring) & (aside <= 1.0 + 1e-12)
+        return np.where(inside, np.maximum(depth, 0.0), 0.0)
 
 
 @dataclass(frozen=True)
@@ -194,6 +250,7 @@ class Bearing:
     pads: Annotated[tuple[Pad, ...], NOT_IN_FILES] = ()
     feed: Annotated[Feed, NOT_IN_FILES] = Feed.FLOODED
     supply_flow: Annotated[float | None, NOT_IN_FILES] = None
+    pockets: Annotated[tuple[Pocket, ...], Key("pocket")] = ()
     profile: BearingProfile | None = field(default=None, compare=False)
     preload: Preload | None = field(default=None, compare=False)
     offset: Offset | None = field(default=None, compare=False)
@@ -221,6 +278,18 @@ class Bearing:
                 f"bearing.groove[{self.grooves.index(groove)}].length",
                 groove.length,
             )
+        for place, pocket in enumerate(self.pockets):
+            low, high = pocket.reach(self.length)
+            _require(
+                high - low > 1e-6 * self.length,
+                "lies beyond the bearing's ends",
+                f"bearing.pocket[{place}].at",
+                pocket.at,
+            )
+        _require(
+            not (self.pockets and self.pads), "pockets are cut into a bore, not into tilting pads",
+            "bearing.pocket", len(self.pockets),
+        )  # fmt: skip
         object.__setattr__(self, "arcs", self._profiled())
 
     def _profiled(self) -> tuple[Arc, ...]:
@@ -288,12 +357,13 @@ class Bearing:
     @property
     def is_plain(self) -> bool:
         """One concentric 360 degree bore without grooves: the same seen from every angle."""
-        return not self.grooves and all(arc.preload == 0.0 for arc in self.arcs)
+        smooth = not (self.grooves or self.pockets)
+        return smooth and all(arc.preload == 0.0 for arc in self.arcs)
 
     @property
     def is_symmetric(self) -> bool:
         """Both axial halves are mirror images."""
-        return self.misalignment == (0.0, 0.0)
+        return self.misalignment == (0.0, 0.0) and all(p.at == 0.0 for p in self.pockets)
 
     def turned(self, angle: float) -> Bearing:
         """The same bearing with every feature moved ahead by `angle` [rad]."""
@@ -307,6 +377,9 @@ class Bearing:
             offset=None,
             grooves=tuple(replace(g, center=g.center + angle) for g in self.grooves),
             arcs=tuple(replace(a, start=a.start + angle, end=a.end + angle) for a in self.arcs),
+            pockets=tuple(
+                replace(p, start=p.start + angle, end=p.end + angle) for p in self.pockets
+            ),
             pads=tuple(replace(p, pivot_angle=p.pivot_angle + angle) for p in self.pads),
             misalignment=(
                 self.misalignment[0] * cos - self.misalignment[1] * sin,

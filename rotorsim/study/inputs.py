@@ -78,6 +78,17 @@ def _bearing(scenario: Scenario) -> _Rows:
                 f"offset {number(arc.offset)}",
             )
         )
+    for place, pocket in enumerate(bearing.pockets, start=1):
+        low, high = pocket.reach(bearing.length)
+        last = pocket.depth if pocket.depth_at_end is None else pocket.depth_at_end
+        deep = dict.fromkeys((_micrometres(pocket.depth), _micrometres(last)))
+        rows.append(
+            Row(
+                f"pocket {place}",
+                f"{_degrees(pocket.start)} to {_degrees(pocket.end)}, {_millimetres(high - low)} "
+                f"long, {' to '.join(deep)} deep",
+            )
+        )
     if not bearing.grooves and not bearing.arcs:
         rows.append(Row("bore", "plain, 360°"))
     if any(bearing.misalignment):
