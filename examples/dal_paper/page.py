@@ -308,6 +308,26 @@ def _wall_table(rows: Sequence[Mapping[str, Any]]) -> str:
     return table(columns, lines)
 
 
+def _growth(number: Mapping[tuple[str, str], Mapping[str, Any]]) -> str:
+    """Say how far the critical mass and the film force move with a hot clearance."""
+    kept = "bush_conduction_free_shaft"
+
+    def of(variant: str) -> str:
+        mass, fall = number[variant, "mass"]["value"], number[variant, "force_reduction"]["value"]
+        if not math.isfinite(mass):
+            return "has no steady state: hot shaft and bush close the clearance"
+        return (
+            f"heating lowers the film force by {fall:.0f} % and the critical mass to {mass:.0f} kg"
+        )
+
+    cold = number[kept, "mass"]["value"], number[kept, "force_reduction"]["value"]
+    return (
+        f"a free bush, hotter than the shaft, opens the clearance: {of('hot_free')}, against "
+        f"{cold[1]:.0f} % and {cold[0]:.0f} kg in the clearance of the drawing. In a rigid "
+        f"housing the hot bush closes on the shaft: {of('hot_rigid_housing')}"
+    )
+
+
 def _sensitivity(r: Results) -> dict[str, Any]:
     """Return what numerics and model move."""
     rows = sensitivity(r)
@@ -329,6 +349,7 @@ def _sensitivity(r: Results) -> dict[str, Any]:
     return {
         "mixing_fall": number[mixing, "force_reduction"]["value"],
         "mixing_mass": number[mixing, "mass"]["value"],
+        "growth": _growth(number),
         "half_mesh": points("mesh_half"),
         "double_mesh": points("mesh_double"),
         "cavitation": points("half_sommerfeld", "full_sommerfeld", "jfo"),

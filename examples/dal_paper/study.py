@@ -51,6 +51,12 @@ WALLS: dict[str, Changes] = {
     "insulated": {"thermal.bush": "insulated", "thermal.shaft": "insulated"},
 }
 """Thermal conditions of bush and shaft: what the paper leaves open, or describes and did not do."""
+EXPANSION: Changes = {
+    "thermal.expansion.shaft": "11.7e-6 / delta_degC",
+    "thermal.expansion.bush": "11.7e-6 / delta_degC",
+    "thermal.expansion.reference_temperature": "40 degC",
+}
+"""Steel shaft and bush; the clearances are measured at the paper's ambient temperature."""
 WALL_NAMES = {
     AMBIENT: "walls at ambient temperature",
     "conduction": "bush conduction, shaft ambient",
@@ -115,6 +121,13 @@ def variants(mesh: Mesh) -> dict[str, tuple[str, Changes]]:
         "bush_conduction_free_shaft_mixing": ("that bush and shaft, and the mixing inlet",
                                               {**free_shaft, **mixing}),
         "insulated": ("both walls insulated", WALLS["insulated"]),
+        **{
+            f"hot_{fit}": (
+                f"the same bush and shaft, grown when hot ({said})",
+                {**free_shaft, **EXPANSION, "thermal.expansion.bush_fit": fit},
+            )
+            for fit, said in (("free", "free bush"), ("rigid_housing", "bush in a rigid housing"))
+        },
     }  # fmt: skip
 
 

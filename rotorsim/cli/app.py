@@ -14,6 +14,7 @@ from .film_commands import check, report, run, solve, table
 from .orbit_command import orbit
 from .output import WRONG_INPUT, Output, guarded
 from .stability_command import stability
+from .transient_command import transient
 
 app: typer.Typer = typer.Typer(
     name="rotorsim",
@@ -53,6 +54,7 @@ for command in (
     stability,
     control,
     orbit,
+    transient,
     report,
     explore,
     view,

@@ -273,6 +273,8 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
         lines = "\n".join(late_whirl(said["orbits"], curves))
         if lines:
             yield lines
+    if said.get("transient"):
+        yield Text.assemble("\n", ("Thermal transient: ", "bold"), said["transient"]["verdict"])
     yield _files_table(said["files"])
     for path in said["files"].get("recording", []):
         yield f"Play it back: rotorsim view {as_typed(path)}"

@@ -17,6 +17,7 @@ from ..study.main_job import Announce, Attempts, Results, compute, summary
 from ..study.orbits import film_at_rest, orbit_settings
 from ..study.planes import Plane, held_text
 from ..study.stability import late_whirl
+from ..study.transient import Transient, transient_frames
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,10 +56,34 @@ def write_results(
         return save_figures(figures(results), folder / "figures" / name, ("png",))
 
     def write() -> list[Path]:
-        return [_write_recording_of(results, folder / "logs" / f"{name}.rrd")]
+        written = [_write_recording_of(results, folder / "logs" / f"{name}.rrd")]
+        if results.transient is not None:
+            path = folder / "logs" / f"{name}-transient.rrd"
+            written.append(record_transient(results.transient, results.scenario, path))
+        return written
 
     files = {"figures": attempt("figures", draw, []), "recording": attempt("recording", write, [])}
     return files, attempt.problems
+
+
+def record_transient(transient: Transient, scenario: Scenario, path: Path) -> Path:
+    """Write the recording of a thermal transient that kept its fields: film and solids in time."""
+    from .recording import RecordingContents, write_recording
+
+    frames = transient_frames(transient, scenario.bearing)
+    lines = [transient.verdict(), ""]
+    for name, place in transient.moments().items():
+        step = transient.steps[place]
+        lines.append(
+            f"- {name.replace('_', ' ')} after {step.time:.4g} s: clearance "
+            f"{transient.clearance[place] * _MICRO:.4g} µm, thinnest film "
+            f"{step.point.min_film_thickness * _MICRO:.4g} µm, journal "
+            f"{QUANTITIES['max_temperature'].text(step.shaft_temperature)} °C, bush "
+            f"{QUANTITIES['max_temperature'].text(step.bush_temperature)} °C"
+        )
+    return write_recording(
+        path, RecordingContents(scenario.title, "\n".join(lines), films=tuple(frames))
+    )
 
 
 def save_figures(
@@ -99,6 +124,8 @@ def figures(results: Results) -> Iterator[tuple[str, Figure]]:
             films = results.films_at_top_speed
             bearing = _bearing_of(results, films[0].radial_clearance)
             yield "pads", plots.pad_sections(films, bearing, title)
+    if results.transient is not None:
+        yield "transient", plots.transient_plot(results.transient, title)
     if results.orbits:
         settings = results.scenario.orbit
         yield from orbit_figures(

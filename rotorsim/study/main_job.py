@@ -18,6 +18,7 @@ from ..orbit.description import describe_orbit
 from . import orbits as orbit_steps
 from .orbits import FilmFrame, film_in_motion
 from .stability import Campbell, StabilityCurve, campbell_curves, stability_curves
+from .transient import Transient, simulate_transient
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,6 +61,7 @@ class Results:
     films: tuple[OperatingPoint, ...] = ()
     film_motion: tuple[FilmFrame, ...] = ()
     modes: tuple[Campbell, ...] = ()
+    transient: Transient | None = None
     problems: tuple[str, ...] = ()
 
     @property
@@ -130,6 +132,11 @@ def compute(
                 label = f"film along the orbit, {orbit.thermal_model}"
                 motion += attempt(label, lambda orbit=orbit: film_in_motion(scenario, orbit), [])
     orbits = orbits or ()
+    transient = None
+    if scenario.transient is not None:
+        transient = attempt(
+            "thermal transient", lambda: simulate_transient(scenario, keep_fields=True), None
+        )
     return Results(
         scenario=scenario,
         table=table,
@@ -140,6 +147,7 @@ def compute(
         films=tuple(films),
         film_motion=tuple(motion),
         modes=tuple(modes),
+        transient=transient,
         problems=tuple(attempt.problems),
     )
 
@@ -270,6 +278,7 @@ def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
         "rotor_mass": mass,
         "heating": _heating_effect(results.points, results.curves),
         "orbits": rows,
+        "transient": None if results.transient is None else results.transient.describe(),
         "files": files,
         "problems": list(results.problems),
     }

@@ -55,6 +55,8 @@ def settled(scenario: Scenario, tables: _Tables) -> Scenario:
     orbit = scenario.orbit
     if orbit is not None:
         orbit = _settled_orbit(orbit, scenario, tables["orbit"])
+    if scenario.transient is not None:
+        _check_transient(scenario)
     settled_scenario = replace(scenario, thermal=thermal, orbit=orbit)
     for _ in settled_scenario.cases():  # each checks itself
         pass
@@ -214,6 +216,29 @@ def _check_tolerances(scenario: Scenario) -> None:
             else f"must be below{of}: something must be left of it",
             key=f"tolerances.{name}",
         )
+
+
+def _check_transient(scenario: Scenario) -> None:
+    """Refuse a transient without heat, without a load to change, or of another clearance."""
+    settings = scenario.transient
+    assert settings is not None
+    if ThermalModel.THD not in scenario.thermal_models:
+        raise InputError('a [transient] needs "thd" among them', key="thermal.models")
+    chosen = settings.radial_clearance
+    if chosen is not None and not any(math.isclose(chosen, c) for c in scenario.radial_clearances):
+        allowed = ", ".join(f'"{c * 1e6:g} um"' for c in scenario.radial_clearances)
+        raise InputError(
+            f"must be one of bearing.radial_clearance ({allowed})", key="transient.radial_clearance"
+        )
+    for number, event in enumerate(settings.events):
+        if event.load is not None and scenario.operating.load is None:
+            raise InputError(
+                "goes with operating.load; with an eccentricity ratio the load is a result",
+                key=f"transient.event[{number}].load",
+            )
+        if event.supply_temperature is not None:
+            key = f"transient.event[{number}].supply_temperature"
+            _check_viscosity(scenario.lubricant, event.supply_temperature, key)
 
 
 def _settled_orbit(orbit: OrbitSettings, scenario: Scenario, given: _Tables) -> OrbitSettings:

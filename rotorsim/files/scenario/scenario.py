@@ -23,6 +23,7 @@ from ...model.operating import Operating, StabilitySettings
 from ...model.orbit import OrbitSettings
 from ...model.pad_bearing import tilting_pad_bearing
 from ...model.tolerances import ToleranceSettings
+from ...model.transient import TransientSettings
 from ...rotor import Rotor
 from ...shipped import shipped_scenarios
 from ...text import printable
@@ -71,6 +72,7 @@ class Scenario:
         With the first thermal model.
     rotor : Rotor or None
     orbit : OrbitSettings or None
+    transient : TransientSettings or None
     stability : StabilitySettings or None
     tolerances : ToleranceSettings or None
     radial_clearances : tuple of float
@@ -90,6 +92,7 @@ class Scenario:
     thermal: ThermalSettings = field(default_factory=ThermalSettings)
     rotor: Annotated[Rotor | None, _ROTORS] = None
     orbit: OrbitSettings | None = None
+    transient: TransientSettings | None = None
     stability: StabilitySettings | None = None
     tolerances: ToleranceSettings | None = None
     radial_clearances: Annotated[tuple[float, ...], NOT_IN_FILES] = ()

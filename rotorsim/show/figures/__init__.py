@@ -26,6 +26,7 @@ from .orbits import (
 from .pads import pad_sections
 from .stability import campbell_diagram, eigenvalue_plot, root_locus, tolerance_histograms
 from .style import figure_bytes, save_figure
+from .transient import transient_plot
 
 __all__ = [
     "animate_orbits",
@@ -53,4 +54,5 @@ __all__ = [
     "stability_map",
     "thresholds_over_speed",
     "tolerance_histograms",
+    "transient_plot",
 ]

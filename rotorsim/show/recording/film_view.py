@@ -26,7 +26,6 @@ from .runs import (
     indices_of_frames,
     pick_run,
     send_run,
-    speed_index,
     thin,
     tick_text,
 )
@@ -288,7 +287,7 @@ def _log_journal(
     run: Run | None,
 ) -> None:
     """Write the shaft with a mark on it, and its motion on every timeline."""
-    film, frames = films[0], [one for one in films if one.time is None]
+    film = films[0]
     radius = film.journal_radius * surfaces.MILLI
     half = 0.5 * film.length * surfaces.MILLI * 1.25
     vertices, triangles, normals = surfaces.cylinder(radius, half)
@@ -314,14 +313,12 @@ def _log_journal(
         static=True,
     )
     scale = surfaces.exaggeration(film) * surfaces.MILLI
-    centres = np.array([[*f.centre, 0.0] for f in frames]).reshape(-1, 3) * scale
-    speeds = [f.speed for f in frames]
-    if speeds:
-        stream.send_columns(
-            entity,
-            [speed_index(speeds)],
-            rr.Transform3D.columns(translation=centres.astype(np.float32)),
-        )
+    centres = np.array([[*f.centre, 0.0] for f in films]).reshape(-1, 3) * scale
+    timed = np.array([f.time is not None for f in films])
+    for index, which in indices_of_frames([], films):
+        if run is None or not timed[which].any():
+            moved = centres[which].astype(np.float32)
+            stream.send_columns(entity, index, rr.Transform3D.columns(translation=moved))
     if run is not None:
         _send_motion(stream, entity, run, scale)
 

@@ -135,7 +135,8 @@ def indices_of_frames(
 ) -> list[tuple[list[rr.TimeColumn], _Indices]]:
     """Return where the frames of one model stand on every timeline.
 
-    runs : The run of the frames' name places them in time; else the first one; else none.
+    runs : The run of the frames' name places them in time; else the first one; without any
+        they have their time alone.
     frames : Those at rest by ascending speed, then those of the run by ascending time. Without the
         latter the frame of the nearest speed stands for the run.
     Returns list of (index columns, frame numbers): One entry to send per set of timelines.
@@ -145,7 +146,8 @@ def indices_of_frames(
     places = [([speed_index(known)], np.arange(known.size))] if known.size else []
     run = pick_run(runs, frames[0].thermal_model)
     if run is None:
-        return places
+        moving = known.size + np.arange(times.size)
+        return [*places, ([_time_index(times)], moving)] if times.size else places
     if times.size:
         turns = np.interp(times, run.orbit.t, run.orbit.revolutions)
         index = [time_index(times), _revolution_index(turns)]

@@ -233,6 +233,8 @@ def _notes(contents: RecordingContents) -> str:
 _Part: TypeAlias = rrb.View | rrb.Container
 _REVOLUTIONS_PER_SECOND = 3.0
 """Turns of the shaft in one second of watching."""
+_TRANSIENT_PLAYED = 20.0
+"""Time in which a thermal transient is played back [s]."""
 _PAGES = ("Overview", "Orbits", "Film", "Stability", "Time series")
 
 
@@ -283,7 +285,7 @@ def _layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprin
         rrb.Tabs(*pages, active_tab=names.index(page) if page in names else 0),
         rrb.TimePanel(
             state="collapsed",
-            timeline=TIME if contents.runs else SPEED,
+            timeline=TIME if contents.runs or _last_moment(contents) else SPEED,
             playback_speed=_playback_speed(contents),
             loop_mode="all",
             play_state="playing",
@@ -295,9 +297,15 @@ def _layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprin
     )
 
 
+def _last_moment(contents: RecordingContents) -> float:
+    """Time of the last film of a run or a transient [s]; 0 without any."""
+    return max((film.time or 0.0 for film in contents.films), default=0.0)
+
+
 def _playback_speed(contents: RecordingContents) -> float | None:
     if not contents.runs:
-        return None
+        last = _last_moment(contents)
+        return float(f"{last / _TRANSIENT_PLAYED:.1g}") if last else None
     fastest = max(float(np.abs(run.orbit.speed).max()) for run in contents.runs)
     return float(f"{_REVOLUTIONS_PER_SECOND * 2.0 * np.pi / max(fastest, 1e-9):.1g}")
 

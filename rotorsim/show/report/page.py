@@ -28,6 +28,7 @@ _CAPTIONS = {
     "eigenvalues": "Eigenvalues of the rotor on its bearing over speed.",
     "film": "Film pressure and temperature at the highest speed.",
     "film_profiles": "Pressure and temperature around the bearing at the highest speed.",
+    "transient": "Thermal transient: temperatures, clearance, operation, stability over time.",
     "cascade": "Spectra of the journal's motion over shaft speed.",
     "orbits": "Journal orbits in the clearance circle; ○ start, ● end, + equilibrium.",
 }
@@ -43,7 +44,7 @@ _FLOWS = {
     "hirs": "turbulent by Hirs' law",
 }
 _MODEL_LIMITS = (
-    "The shaft and bush are rigid; the bush does not expand.",
+    "Shaft and bush keep their shape, and without an expansion their size.",
     "K and C are those of small motions about the equilibrium; a growing motion soon leaves them.",
     "The critical mass and the map hold for a rigid rotor on two like bearings.",
 )
