@@ -70,7 +70,8 @@ def record_transient(transient: Transient, scenario: Scenario, path: Path) -> Pa
     """Write the recording of a thermal transient that kept its fields: film and solids in time."""
     from .recording import RecordingContents, write_recording
 
-    frames = transient_frames(transient, scenario.bearing)
+    bearing = scenario.bearing.turned(-scenario.load_direction)
+    frames = transient_frames(transient, bearing)
     lines = [transient.verdict(), ""]
     for name, place in transient.moments().items():
         step = transient.steps[place]

@@ -147,7 +147,7 @@ def indices_of_frames(
     run = pick_run(runs, frames[0].thermal_model)
     if run is None:
         moving = known.size + np.arange(times.size)
-        return [*places, ([_time_index(times)], moving)] if times.size else places
+        return [*places, ([time_index(times)], moving)] if times.size else places
     if times.size:
         turns = np.interp(times, run.orbit.t, run.orbit.revolutions)
         index = [time_index(times), _revolution_index(turns)]
