@@ -58,10 +58,7 @@ _shown_in = ["si"]
 def show_units(system: str) -> None:
     """Show results in the units of a system from now on: ``si`` or ``us``.
 
-    Raises
-    ------
-    InputError
-        No such system.
+    Raises InputError: No such system.
     """
     if system not in ("si", "us"):
         raise InputError("must be si or us", key="units", value=system)

@@ -181,7 +181,7 @@ def regime_warnings(
 
 
 def _flow_warnings(case: Case, reynolds: float, taylor: float) -> list[str]:
-    """What a laminar film leaves out; nothing of a film whose flow law knows turbulence."""
+    """Return what a laminar film leaves out; nothing of a film whose flow law knows turbulence."""
     found: list[str] = []
     if case.film.flow is not FlowRegime.LAMINAR:
         return found

@@ -101,7 +101,7 @@ def point_text(point: OperatingPoint, name: str, digits: int | None = None) -> s
 
 
 def point_rows(point: OperatingPoint) -> list[Row]:
-    """What a point comes to, row by row: equilibrium, film, heat, rigid rotor, solver."""
+    """Return what a point comes to, row by row: equilibrium, film, heat, rigid rotor, solver."""
     rows = []
     for name in _POINT_ROWS:
         if name in _TURBULENT and not point.laminar_share < 1.0:

@@ -35,7 +35,6 @@ from .whirl import FrequencyScan, WhirlThreshold, rigid_threshold, routh_coeffic
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _DEFAULT_RATIO = 0.5
 """Whirl over shaft frequency at which coefficients are stated where there is no threshold."""
 _NOTICEABLE = 0.01
@@ -209,11 +208,7 @@ def _misfit(stiffness: Array, damping: Array, frequency: Array) -> Array:
 
 
 def film_dynamics(
-    solution: FilmSolution,
-    turn: Array,
-    *,
-    following: Array | None = None,
-    rotations: bool = False,
+    solution: FilmSolution, turn: Array, *, following: Array | None = None, rotations: bool = False
 ) -> FilmDynamics:
     """Return the dynamic stiffness of a solved film.
 

@@ -70,7 +70,6 @@ class Coefficients:
 
 
 Array = NDArray[np.float64]
-
 _SPEED_TOLERANCE = 1e-9
 """Relative; two speeds nearer than this are the same one written in different units."""
 
@@ -98,11 +97,7 @@ class CoefficientInterpolator:
 
     @classmethod
     def from_columns(
-        cls,
-        speeds: Array,
-        converged: NDArray[np.bool_],
-        columns: Array,
-        constant: bool = False,
+        cls, speeds: Array, converged: NDArray[np.bool_], columns: Array, constant: bool = False
     ) -> CoefficientInterpolator:
         """Fit (n, 9) `columns` over ascending `speeds` [rad/s]."""
         from scipy.interpolate import PchipInterpolator
@@ -246,7 +241,7 @@ def refine(dataset: xr.Dataset, dimension: str, values: Array) -> xr.Dataset:
 def _between_good(
     usable: NDArray[np.bool_], below: NDArray[np.intp], known: Array, wanted: Array
 ) -> NDArray[np.bool_]:
-    """Whether both neighbours of each value converged, or the one that it falls on."""
+    """Return whether both neighbours of each value converged, or the one that it falls on."""
     on_low = np.abs(wanted - known[below]) <= _SLACK * known[below]
     on_high = np.abs(wanted - known[below + 1]) <= _SLACK * known[below + 1]
     both = usable[below] & usable[below + 1]

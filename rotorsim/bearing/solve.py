@@ -43,11 +43,7 @@ _WITH_NUMBERS = (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED, SolveStatus.O
 
 
 def solve_case(
-    case: Case,
-    speed: float,
-    *,
-    initial: WarmStart | None = None,
-    keep_fields: bool = False,
+    case: Case, speed: float, *, initial: WarmStart | None = None, keep_fields: bool = False
 ) -> tuple[OperatingPoint, WarmStart | None]:
     """Solve `case` at `speed` [rad/s].
 
@@ -92,10 +88,7 @@ def solved_film(
 
     `walls` as in `rotorsim.film.solution.solve_film`.
 
-    Raises
-    ------
-    NoFilmError, SingularFilmError
-        There is no film.
+    Raises NoFilmError, SingularFilmError: There is no film.
     """
     solver = solve_pads if case.bearing.pads else solve_film
     if initial is not None:

@@ -23,26 +23,20 @@ if TYPE_CHECKING:
 
 TABLE_VERSION = 1
 """Format of the file; raised when older programs could misread it."""
-
 COEFFICIENTS = ("kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")
-
 DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
-
 _FREQUENCY = "frequency_ratio"
 """Dimension of the variables ``kxx_of_frequency`` ... ``cyy_of_frequency``, where given."""
-
 LARGEST = 1e20
 """Of stiffness [N/m] and damping [N s/m]; beyond, their products would overflow."""
 _SLOWEST, FASTEST = 1e-6, 1e6
 """Shaft speeds [rad/s]."""
-
 CONSTANT = "constant"
 """Attribute of a table whose coefficients hold at any speed, not at the tabulated ones only."""
 CONSTANT_SPEEDS = tuple(1000.0 * (step + 1) * math.pi / 30.0 for step in range(20))
 """Speeds at which constant coefficients are tabulated unless others are wanted [rad/s]."""
 NOTES = "notes"
 """Attribute with what a reader left out or took for granted, a line each."""
-
 SIGNS = (
     "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",
     "first index: direction of the force, second: direction of the displacement or velocity.",
@@ -53,7 +47,6 @@ CONVENTIONS = (
     *SIGNS,
 )
 """Lines that every file in the load frame carries."""
-
 _NAMES = ("x", "y", "theta_x", "theta_y")
 
 
@@ -142,7 +135,6 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "stability": ("1", "verdict on the rigid rotor's critical mass"),
     "cavitation": ("1", "cavitation model"),
 }
-
 SCALARS = (
     "eccentricity_ratio",
     "attitude_angle",
@@ -169,12 +161,9 @@ SCALARS = (
     "coefficient_frequency_ratio",
     "residual",
 )
-
 FULL_COEFFICIENTS = tuple(f"{kind}_{i}_{j}" for kind in "kc" for i in _NAMES for j in _NAMES)
 """K and C over displacements and rotations, row by row: ``k_x_x`` ... ``c_theta_y_theta_y``."""
-
 _TEXTS = ("status", "stability", "cavitation")
-
 UNKNOWNS = ("unknown", "other_unknown")
 """Dimensions of the matrices over journal and pads: force of the first, motion of the second."""
 PAD_MATRICES = ("full_stiffness", "full_damping", "full_mass")
@@ -368,7 +357,7 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
 
 
 def _is_journal_only(full: FullCoefficients | None) -> bool:
-    """Whether there are displacements and rotations of the journal, and no pads."""
+    """Return whether there are displacements and rotations of the journal, and no pads."""
     return full is not None and full.names == _NAMES
 
 

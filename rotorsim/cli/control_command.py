@@ -354,7 +354,7 @@ def _study_tables(study: ControlStudy) -> list[Any]:
 
 
 def _saturates(study: ControlStudy) -> bool:
-    """Whether the actuator reached its limit in the run in time."""
+    """Return whether the actuator reached its limit in the run in time."""
     force = study.largest_force
     return force is not None and force >= (1.0 - 1e-9) * study.feedback.max_force
 

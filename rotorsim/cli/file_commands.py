@@ -97,8 +97,7 @@ def new(
         typer.Option("--profile", "-p", help="Shape of the bore.", show_default="plain"),
     ] = None,
     rotor: Annotated[
-        _NewRotor,
-        typer.Option("--rotor", help="beam: a machine's file, its bearing's beside it."),
+        _NewRotor, typer.Option("--rotor", help="beam: a machine's file, its bearing's beside it.")
     ] = _NewRotor.RIGID,
     load: Annotated[
         str | None, typer.Option("--load", help='Static load, e.g. "10 kN".', show_default="10 kN")

@@ -95,8 +95,7 @@ SchedulerOption = Annotated[
     ),
 ]  # fmt: skip
 ModelOption = Annotated[
-    str | None,
-    option("--model -m", "NAME", "Only this thermal model: isothermal or thd.", OWN),
+    str | None, option("--model -m", "NAME", "Only this thermal model: isothermal or thd.", OWN)
 ]
 ClearanceOption = Annotated[
     str | None,
@@ -123,8 +122,7 @@ SpeedOption = Annotated[
     str | None, option("--speed -s", "SPEED", 'Only this speed, e.g. "15000 rpm".', OWN)
 ]
 FolderOption = Annotated[
-    Path | None,
-    option("--output -o", "DIR", "Write figures (PNG, SVG) and maps (netCDF) here."),
+    Path | None, option("--output -o", "DIR", "Write figures (PNG, SVG) and maps (netCDF) here.")
 ]
 MassOption = Annotated[
     str | None, option("--mass", "MASS", 'Rotor mass per bearing, e.g. "1200 kg".', OWN, ROTOR)

@@ -35,7 +35,6 @@ WRONG_INPUT = 2
 """Nothing was computed: the input must be changed first."""
 _INTERRUPTED = 130
 """Stopped by the user (the shells' code for it)."""
-
 _TABLE_WIDTH = 100
 
 
@@ -156,10 +155,7 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
 def _usual_units() -> str:
     """Units of the user's configuration; SI where there is none.
 
-    Raises
-    ------
-    InputError
-        The file is no TOML, or names something else.
+    Raises InputError: The file is no TOML, or names something else.
     """
     import tomllib
     from pathlib import Path

@@ -45,9 +45,7 @@ if TYPE_CHECKING:
 
 
 _MAP, _TOLERANCES = "Map over two inputs", "Tolerances"
-
 _MOST_VALUES = 1000
-
 _SHORT = {"clearance": "radial_clearance", "applied_load": "load"}
 """Other names of inputs, to those of a scenario's ``[tolerances]``."""
 
@@ -135,8 +133,7 @@ _Dofs = Annotated[
     ),
 ]  # fmt: skip
 _Modes = Annotated[
-    int,
-    option("--modes", "N", "Branches to follow, lowest first.", True, ROTOR, min=1, max=1000),
+    int, option("--modes", "N", "Branches to follow, lowest first.", True, ROTOR, min=1, max=1000)
 ]
 _X = Annotated[str | None, _axis("x")]
 _Y = Annotated[str | None, _axis("y")]

@@ -138,7 +138,7 @@ def plane_document(plane: Plane) -> dict[str, Any]:
 
 
 def plane_table(plane: Plane) -> list[RenderableType]:
-    """How much of the map is stable, and its border at some places."""
+    """Return how much of the map is stable, and its border at some places."""
     from ..study.planes import held_text
 
     head = f"Stability over {_name(plane.names[0])} and {_name(plane.names[1])}"
@@ -278,7 +278,7 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
 
 
 def _share_note(explained: float) -> str:
-    """What the shares of variance are."""
+    """Return what the shares of variance are."""
     if not math.isfinite(explained):
         return "share of variance: too few samples to tell, or nothing varies"
     return (

@@ -29,19 +29,12 @@ _MOST_VALUES = 1000
 class _Kind:
     """A parameter's quantity, and what it changes.
 
-    Attributes
-    ----------
-    quantity : str or None
-        Name in `rotorsim.units.QUANTITIES`; None: a plain factor.
-    example : str
-    owner : str
-        ``film`` (a support with a bearing file; without a name all of them), ``support``, ``disc``,
-        ``place`` or nothing.
-    sign : str
-        See `rotorsim.model.entries.Quantity`.
-    films : str
-        When the films must be solved again: ``always``, ``never``, or ``shared`` where more than
-        two supports share the static load.
+    quantity : Name in `rotorsim.units.QUANTITIES`; None: a plain factor.
+    owner : ``film`` (a support with a bearing file; without a name all of them), ``support``,
+        ``disc``, ``place`` or nothing.
+    sign : See `rotorsim.model.entries.Quantity`.
+    films : When the films must be solved again: ``always``, ``never``, or ``shared`` where more
+        than two supports share the static load.
     """
 
     quantity: str | None
@@ -76,14 +69,9 @@ _SHORT = {"clearance": "radial_clearance", "temperature": "supply_temperature"}
 class Variant:
     """A machine with some parameters changed.
 
-    Attributes
-    ----------
-    machine : MachineFile
-    films : mapping of str to mapping
-        Changes of each support's film, see `rotorsim.study.planes.changed`; ``applied_load``
+    films : Changes of each support's film, see `rotorsim.study.planes.changed`; ``applied_load``
         replaces the magnitude of its static load.
-    cross_stiffness : mapping of float to float
-        Destabilising stiffness [N/m] by place [m].
+    cross_stiffness : Destabilising stiffness [N/m] by place [m].
     """
 
     machine: MachineFile
@@ -95,16 +83,11 @@ class Variant:
 class Parameter:
     """One value of a machine; `parameter` finds it by its name.
 
-    Attributes
-    ----------
-    kind : str
-        Of `PARAMETERS`.
-    owner : str
-        Name of the support or disc, or the place; empty: all films, the rotor, the file's places.
-    films : bool
-        Whether films must be solved again.
-    places : mapping of float to float
-        Of a destabilising stiffness: each place's share.
+    kind : Of `PARAMETERS`.
+    owner : Name of the support or disc, or the place; empty: all films, the rotor, the file's
+        places.
+    films : Whether films must be solved again.
+    places : Of a destabilising stiffness: each place's share.
     """
 
     kind: str
@@ -274,18 +257,9 @@ def _scaled(disc: Any, mass: float) -> Any:
 def parameter(machine: MachineFile, name: str, key: str) -> Parameter:
     """Parameter of a machine by its name.
 
-    Parameters
-    ----------
-    machine : MachineFile
-    name : str
-        A word of `PARAMETERS`; before a dot the support, disc or place it belongs to.
-    key : str
-        Where the name stands, for messages.
-
-    Raises
-    ------
-    InputError
-        The name means nothing in this machine, with what is allowed.
+    name : A word of `PARAMETERS`; before a dot the support, disc or place it belongs to.
+    key : Where the name stands, for messages.
+    Raises InputError: The name means nothing in this machine, with what is allowed.
     """
     owner, _, word = str(name).strip().rpartition(".")
     owner, word = owner.strip(), word.strip().lower().replace("-", "_").replace(" ", "_")

@@ -97,9 +97,7 @@ def _value(value: object, unit: str) -> str:
     return json.dumps(value)
 
 
-def _sections(
-    source: Path,
-) -> tuple[list[dict[str, object]], list[dict[str, object]]]:
+def _sections(source: Path) -> tuple[list[dict[str, object]], list[dict[str, object]]]:
     """Sections and discs of a table."""
     lines, _ = delimited.cells(source, lambda names: {"length", "outer_diameter"} <= set(names),
                                _OTHER_NAMES)  # fmt: skip

@@ -24,27 +24,18 @@ Array = NDArray[np.float64]
 class BushOperator:
     """Finite volumes of the bush or of one pad, diagonalised around and along.
 
-    Attributes
-    ----------
-    around : (n, n) array
-        Eigenvectors of the Laplacian around, orthonormal in its cell lengths.
-    along : (m, m) array
-        Eigenvectors of the axial Laplacian with convection at the ends, likewise.
-    lengths : tuple of arrays
-        Cell lengths d(theta) [rad] and dy [m].
-    resistance : (n, m) array
-        Bore temperature above ambient per unit heat flux [m2 K/W], for each pair of modes.
-    profile : (n, m, l) array
-        Temperature of the bush's cells per unit heat flux, for each pair of modes.
-    radii : (l,) array
-        Of the cells' centres [m]; they are equally thick.
-    rest : (n, m, l) array
-        Temperature of the cells above ambient at no flux, for each pair of modes [K]: 0 unless
-        heat is stored.
-    system : tuple of arrays
-        Diagonal (n, m, l) and links (l - 1,) of the systems in r.
-    skin : float
-        Resistance from the first cells' centres to the bore [m2 K/W].
+    around : (n, n) array. Eigenvectors of the Laplacian around, orthonormal in its cell lengths.
+    along : (m, m) array. Eigenvectors of the axial Laplacian with convection at the ends, likewise.
+    lengths : tuple of arrays. Cell lengths d(theta) [rad] and dy [m].
+    resistance : (n, m) array. Bore temperature above ambient per unit heat flux [m2 K/W], for each
+        pair of modes.
+    profile : (n, m, l) array. Temperature of the bush's cells per unit heat flux, for each pair of
+        modes.
+    radii : (l,) array. Of the cells' centres [m]; they are equally thick.
+    rest : (n, m, l) array. Temperature of the cells above ambient at no flux, for each pair of
+        modes [K]: 0 unless heat is stored.
+    system : tuple of arrays. Diagonal (n, m, l) and links (l - 1,) of the systems in r.
+    skin : Resistance from the first cells' centres to the bore [m2 K/W].
     """
 
     around: Array
@@ -60,12 +51,9 @@ class BushOperator:
     def step(self, rate: float, held: Array) -> BushOperator:
         """Return the operator of the same solid over a time step.
 
-        Parameters
-        ----------
-        rate : float
-            Heat stored per volume and degree over the step [W/(m3 K)].
-        held : (n, m, l) array
-            Modes of the temperature above ambient that the step begins from [K].
+        rate : Heat stored per volume and degree over the step [W/(m3 K)].
+        held : (n, m, l) array. Modes of the temperature above ambient that the step begins from
+            [K].
         """
         diagonal, links = self.system
         size = float(self.radii[1] - self.radii[0])
@@ -104,10 +92,7 @@ class BushOperator:
 
         The gradient is that of the straight line through the temperatures, which bends a beam.
 
-        Parameters
-        ----------
-        bore_rise : (n, m) array
-            Of the bore above ambient [K].
+        bore_rise : (n, m) array. Of the bore above ambient [K].
         """
         (mean, gradient), at_rest = self._body_weights
         first = float(np.sum(mean * bore_rise)) + at_rest[0]
@@ -159,24 +144,15 @@ def bush_operator(
 ) -> BushOperator:
     """Build the operator of a ring, or of a pad.
 
-    Parameters
-    ----------
-    theta_faces : (n + 1,) array
-        [rad], one turn; or from edge to edge of a pad.
-    y_faces : (m + 1,) array
-        [m]
-    radii : tuple of float
-        Bore and outer radius [m].
-    layers : int
-        Cells through the bush.
-    conductivity : float
-        [W/(m K)]
-    outer_transfer : float
-        Heat transfer to the surroundings on the outer surface [W/(m2 K)].
-    end_transfer : tuple of float
-        On the first and the last end; 0 for a plane of symmetry.
-    edge_transfer : float, optional
-        On a pad's leading and trailing edge [W/(m2 K)], at its mean radius; None: a ring.
+    theta_faces : (n + 1,) array [rad], one turn; or from edge to edge of a pad.
+    y_faces : (m + 1,) array [m]
+    radii : Bore and outer radius [m].
+    layers : Cells through the bush.
+    conductivity : [W/(m K)]
+    outer_transfer : Heat transfer to the surroundings on the outer surface [W/(m2 K)].
+    end_transfer : On the first and the last end; 0 for a plane of symmetry.
+    edge_transfer : On a pad's leading and trailing edge [W/(m2 K)], at its mean radius; None: a
+        ring.
     """
     dtheta, dy = np.diff(theta_faces), np.diff(y_faces)
     edge = None if edge_transfer is None else 0.5 * (radii[0] + radii[1]) * edge_transfer

@@ -18,7 +18,6 @@ from .linearization import stiffness_matrix
 from .problem import FilmProblem, FilmState
 
 Array = NDArray[np.float64]
-
 ECCENTRICITY_LIMITS = (1e-5, 0.9995)
 """Eccentricity ratios between which an equilibrium is sought."""
 CLEARANCE_KEPT = 5e-4

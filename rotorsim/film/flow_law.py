@@ -20,7 +20,6 @@ from .layers import LayerIntegrals, TurbulentIntegrals
 from .turbulence import TURBULENT_PRANDTL, integrate, layer_tables
 
 Array = NDArray[np.float64]
-
 POISEUILLE_POWER = 3
 """d ln(flow)/d ln(h) of the Poiseuille part of Dowson's equation at given F_2."""
 COUETTE_POWER = 1
@@ -37,19 +36,10 @@ class FlowLaw(Protocol):
     ) -> LayerIntegrals:
         """Integrals of every column under this law.
 
-        Parameters
-        ----------
-        layers : LayerIntegrals
-            Of laminar flow with the same viscosity.
-        thickness : (n, m) array
-            At cell centres [m].
-        surface_speed : float
-            [m/s]
-
-        Returns
-        -------
-        LayerIntegrals
-            With `LayerIntegrals.rates` where they change with the film thickness.
+        layers : Of laminar flow with the same viscosity.
+        thickness : (n, m) array. At cell centres [m].
+        surface_speed : [m/s]
+        Returns: With `LayerIntegrals.rates` where they change with the film thickness.
         """
         ...
 
@@ -69,18 +59,12 @@ class LaminarFlow:
 class TurbulentFlow:
     """Eddy viscosity after Reichardt, or a bulk law with his profile (see `film.turbulence`).
 
-    Attributes
-    ----------
-    density : float
-        [kg/m3]
-    transition : tuple of float
-        rho U h/mu up to which the film is laminar, and from which it is turbulent, mu = 1/F_0 of
-        the laminar film; (0, 0): turbulent throughout.
-    diffusion : float
-        c_p/(k Pr_t) [1/(Pa s)]: eddies conduct mu eps times this as much as the oil.
-    bulk : tuple of (base, factor, exponent, added)
-        Of shear, k_x and k_y: base + factor Re^exponent, or where not added the larger of the two.
-        Empty: Reichardt's own.
+    density : [kg/m3]
+    transition : rho U h/mu up to which the film is laminar, and from which it is turbulent, mu =
+        1/F_0 of the laminar film; (0, 0): turbulent throughout.
+    diffusion : c_p/(k Pr_t) [1/(Pa s)]: eddies conduct mu eps times this as much as the oil.
+    bulk : tuple of (base, factor, exponent, added). Of shear, k_x and k_y: base + factor
+        Re^exponent, or where not added the larger of the two. Empty: Reichardt's own.
     """
 
     density: float

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from .walls import Walls
 
 Array = NDArray[np.float64]
-
 _LARGEST_CHANGE = 1.4
 """Factor by which one iteration may change the clearance."""
 _LEAST_CLEARANCE = 0.02
@@ -35,15 +34,10 @@ _CLOSED_STEPS = 12
 def hot_clearances(cold: Bearing, expansion: Expansion, shaft: float, bodies: Array) -> Array:
     """Return the clearances that hot solids leave [m], as `clearances` gives them.
 
-    Parameters
-    ----------
-    cold : Bearing
-        At the reference temperature.
-    shaft : float
-        Mean temperature of the journal [K].
-    bodies : (solids, 2) array
-        Mean temperature [K] and dT/dr [K/m] of the bush, or of each pad; with pads the last row is
-        the ring's that holds them.
+    cold : At the reference temperature.
+    shaft : Mean temperature of the journal [K].
+    bodies : (solids, 2) array. Mean temperature [K] and dT/dr [K/m] of the bush, or of each pad;
+        with pads the last row is the ring's that holds them.
     """
     journal = expansion.journal_growth(cold.journal_radius, shaft)
     if not cold.pads:
@@ -72,10 +66,7 @@ def clearances(bearing: Bearing) -> Array:
 def with_clearances(cold: Bearing, values: Array) -> Bearing:
     """Return the bearing with other `clearances`; lobes stay displaced as they are.
 
-    Raises
-    ------
-    NoFilmError
-        Nothing is left of a clearance.
+    Raises NoFilmError: Nothing is left of a clearance.
     """
     if values.min() <= 0.0:
         raise NoFilmError("the hot journal fills the clearance")
@@ -108,12 +99,7 @@ def hot_problem(problem: FilmProblem, bearing: Bearing) -> FilmProblem:
 class Growth:
     """Follows the clearance through a thermal film's iteration, by limited steps.
 
-    Attributes
-    ----------
-    cold : Bearing
-    expansion : Expansion
-    lagging : bool
-        Whether the last film had another clearance than its temperatures ask for.
+    lagging : Whether the last film had another clearance than its temperatures ask for.
     """
 
     cold: Bearing
@@ -124,10 +110,7 @@ class Growth:
     def __call__(self, problem: FilmProblem, heat: Heat, walls: Walls) -> FilmProblem:
         """Return the film's problem at the temperatures of `heat`.
 
-        Raises
-        ------
-        NoFilmError
-            The clearance stays closed.
+        Raises NoFilmError: The clearance stays closed.
         """
         old = clearances(problem.bearing)
         shaft, bodies = walls.shaft_body(heat.shaft), walls.bodies(heat.bush)

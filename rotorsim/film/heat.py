@@ -23,14 +23,9 @@ Flags = NDArray[np.bool_]
 class Heat:
     """Temperatures of the film and its walls.
 
-    Attributes
-    ----------
-    temperature : (n, m, k) array
-        [K]
-    bush : (n, m) array
-        Of the bore [K].
-    shaft : float
-        [K]
+    temperature : (n, m, k) array [K]
+    bush : (n, m) array. Of the bore [K].
+    shaft : [K]
     """
 
     temperature: Array

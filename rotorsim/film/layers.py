@@ -27,21 +27,15 @@ Array = NDArray[np.float64]
 class LayerIntegrals:
     """Cross-film integrals of every column of cells.
 
-    Attributes
-    ----------
-    f0, f2, g : (n, m) arrays
-        F_0 [1/(Pa s)], F_2 [1/(Pa s)] in the direction of motion, G = F_1/F_0 [-].
-    f2_axial : (n, m) array
-        F_2 along the axis; the same in laminar flow.
-    pressure_share, shear_share : (n, m, k) arrays
-        a_k [1/(Pa s)] and b_k [-]; empty (k = 0) for an isoviscous film.
-    viscosity : (n, m, k) array
-        Laminar [Pa s]; k = 1 for an isoviscous film.
-    rates : (3, n, m) array or None
-        d ln/d ln h of f2, f2_axial and 1 - g, where the flow law makes them depend on the film
-        thickness.
-    turbulent : TurbulentIntegrals or None
-        What a turbulent film needs besides.
+    f0, f2, g : (n, m) arrays. F_0 [1/(Pa s)], F_2 [1/(Pa s)] in the direction of motion, G =
+        F_1/F_0 [-].
+    f2_axial : (n, m) array. F_2 along the axis; the same in laminar flow.
+    pressure_share, shear_share : (n, m, k) arrays. a_k [1/(Pa s)] and b_k [-]; empty (k = 0) for an
+        isoviscous film.
+    viscosity : (n, m, k) array. Laminar [Pa s]; k = 1 for an isoviscous film.
+    rates : (3, n, m) array or None. d ln/d ln h of f2, f2_axial and 1 - g, where the flow law makes
+        them depend on the film thickness.
+    turbulent : What a turbulent film needs besides.
     """
 
     f0: Array
@@ -59,20 +53,15 @@ class LayerIntegrals:
 class TurbulentIntegrals:
     """Besides `LayerIntegrals`, where any column is not laminar.
 
-    Attributes
-    ----------
-    laminar : LayerIntegrals
-        Of the same viscosity.
-    weight : (n, m) array
-        Of turbulent against laminar fluidity, 0 to 1.
-    g_tangent : (n, m) array
-        F_1/F_0 of the viscosity that a pressure gradient along the motion meets.
-    axial_share : (n, m, k) array
-        a_k along the axis [1/(Pa s)].
-    heat_share : (4, n, m, k) array
-        Integrals over each layer that share out the dissipation; see `film.energy.dissipation`.
-    conduction : (n, m, k + 1) array
-        By how much eddies multiply the conduction between neighbouring layers, walls included.
+    laminar : Of the same viscosity.
+    weight : (n, m) array. Of turbulent against laminar fluidity, 0 to 1.
+    g_tangent : (n, m) array. F_1/F_0 of the viscosity that a pressure gradient along the motion
+        meets.
+    axial_share : (n, m, k) array. a_k along the axis [1/(Pa s)].
+    heat_share : (4, n, m, k) array. Integrals over each layer that share out the dissipation; see
+        `film.energy.dissipation`.
+    conduction : (n, m, k + 1) array. By how much eddies multiply the conduction between
+        neighbouring layers, walls included.
     """
 
     laminar: LayerIntegrals

@@ -62,12 +62,8 @@ _SAMPLES = 16
 class PadSearch:
     """Newton's method for journal and pads; see `solve_thermal_film`.
 
-    Parameters
-    ----------
-    problem : FilmProblem
-        With all its pads.
-    target : Target
-        Load along x, or eccentricity ratio.
+    problem : With all its pads.
+    target : Load along x, or eccentricity ratio.
     """
 
     def __init__(self, problem: FilmProblem, target: Target) -> None:
@@ -98,10 +94,7 @@ class PadSearch:
     def first_guess(self) -> Array:
         """Displacements to begin with: the journal half-way to the pads, along the load.
 
-        Raises
-        ------
-        NoFilmError
-            At the given eccentricity the journal touches a pad wherever it stands.
+        Raises NoFilmError: At the given eccentricity the journal touches a pad wherever it stands.
         """
         q = np.zeros(len(self._weights))
         if isinstance(self.target, EccentricityTarget):

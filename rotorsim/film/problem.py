@@ -33,21 +33,8 @@ Array = NDArray[np.float64]
 class FilmProblem:
     """A film in the film frame: for a plain bearing x along the line of centres, else the load's.
 
-    Attributes
-    ----------
-    bearing : Bearing
-    lubricant : Lubricant
-    settings : FilmSettings
-    thermal : ThermalSettings
-    speed : float
-        [rad/s]
-    mesh : FilmMesh
-    topology : FaceTopology
-    geometry : FilmGeometry
-    flow_law : FlowLaw
-    rupture : RuptureCondition
-    cold : Bearing
-        The bearing at the reference temperature of its expansion; `bearing` is the hot one.
+    speed : [rad/s]
+    cold : The bearing at the reference temperature of its expansion; `bearing` is the hot one.
     """
 
     bearing: Bearing
@@ -82,20 +69,13 @@ class FilmProblem:
 class FilmState:
     """The film at one vector of displacements and one viscosity field.
 
-    Attributes
-    ----------
-    problem : FilmProblem
-    displacement : (q,) array
-        Generalised displacements, in the order of `FilmGeometry.displacements`; film frame.
-    thickness : (5, n, m) array
-        At each cell's centre and on its faces [m].
-    operator : FilmOperator
-        Its Couette flow is what the ruptured film carries.
-    layers : LayerIntegrals
-        Under the problem's flow law.
-    solution : PressureSolution
-    force : (q,) array
-        Generalised forces of the film; the first two are those on the journal [N], film frame.
+    displacement : (q,) array. Generalised displacements, in the order of
+        `FilmGeometry.displacements`; film frame.
+    thickness : (5, n, m) array. At each cell's centre and on its faces [m].
+    operator : Its Couette flow is what the ruptured film carries.
+    layers : Under the problem's flow law.
+    force : (q,) array. Generalised forces of the film; the first two are those on the journal [N],
+        film frame.
     """
 
     problem: FilmProblem
@@ -166,22 +146,11 @@ def film_state(
 ) -> FilmState:
     """Solve for pressure and forces at the displacements q.
 
-    Parameters
-    ----------
-    problem : FilmProblem
-    displacement : (q,) array
-        Film frame.
-    layers : LayerIntegrals
-        Of laminar flow with the film's viscosity, or of a film under the same law.
-    velocity : (q,) array, optional
-        Rates of the displacements [1/s]; at rest without.
-    start, frozen : (n, m) bool arrays, optional
-        See `RuptureCondition.solve`.
-
-    Raises
-    ------
-    NoFilmError
-        The walls touch.
+    displacement : (q,) array. Film frame.
+    layers : Of laminar flow with the film's viscosity, or of a film under the same law.
+    velocity : (q,) array. Rates of the displacements [1/s]; at rest without.
+    start, frozen : (n, m) bool arrays. See `RuptureCondition.solve`.
+    Raises NoFilmError: The walls touch.
     """
     geometry, mesh = problem.geometry, problem.mesh
     displacement = np.array(displacement, dtype=float)

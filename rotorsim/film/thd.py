@@ -44,7 +44,6 @@ from .walls import FilmContact, Walls, choose_walls
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
 _TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
 _SPREAD_WEIGHT = 0.1
@@ -84,28 +83,14 @@ _TEMPERATURE_LIMITS = (150.0, 650.0)
 class ThermalFilm:
     """A converged (or last) iterate.
 
-    Attributes
-    ----------
-    state : FilmState
-        Pressure and flow at the temperatures below.
-    heat : Heat
-    viscosity : (n, m, k) array
-        [Pa s]
-    energy : EnergyProblem
-    walls : Walls
-    inlet_temperature : (4, n, m) or (4, n, m, k) array
-        [K]
-    leaving_temperature : (2, n, m, k) array
-        Of the oil that leaves each cell along the film and the axis [K].
-    balance : HeatBalance
-    converged : bool
-    cause : str
-        What has not converged; empty if `converged`.
-    out_of_range : bool
-        Whether the temperatures left `_TEMPERATURE_LIMITS`.
-    iterations : int
-    residual : float
-        Last change of log viscosity, or what counts as much (see `_change`).
+    state : Pressure and flow at the temperatures below.
+    viscosity : (n, m, k) array [Pa s]
+    inlet_temperature : (4, n, m) or (4, n, m, k) array [K]
+    leaving_temperature : (2, n, m, k) array. Of the oil that leaves each cell along the film and
+        the axis [K].
+    cause : What has not converged; empty if `converged`.
+    out_of_range : Whether the temperatures left `_TEMPERATURE_LIMITS`.
+    residual : Last change of log viscosity, or what counts as much (see `_change`).
     """
 
     state: FilmState
@@ -164,28 +149,16 @@ def solve_thermal_film(
 ) -> ThermalFilm:
     """Iterate to the fixed point.
 
-    Parameters
-    ----------
-    displacement : (q,) array
-        Generalised displacements, film frame; the first guess if `move` is given.
-    initial : Heat, optional
-        A neighbouring solution.
-    move : callable, optional
-        Gives the next displacements; called once an iteration.
-    walls : Walls, optional
-        By default the steady ones of the problem's settings.
-    full : (n, m) bool array, optional
-        The full cells, taken as given throughout.
-    proceed : callable, optional
-        Called once, when both residuals fall below `ROUGH_TOLERANCE`.
-        Return False to get the rough solution back (`converged` False), as for a mesh graded anew.
-    tolerance : float
-        Of the change of log viscosity; the other tolerances stay.
-
-    Returns
-    -------
-    ThermalFilm
-        With `converged` False and a `cause` if `max_iterations` did not suffice.
+    displacement : (q,) array. Generalised displacements, film frame; the first guess if `move` is
+        given.
+    initial : A neighbouring solution.
+    move : Gives the next displacements; called once an iteration.
+    walls : By default the steady ones of the problem's settings.
+    full : (n, m) bool array. The full cells, taken as given throughout.
+    proceed : Called once, when both residuals fall below `ROUGH_TOLERANCE`. Return False to get the
+        rough solution back (`converged` False), as for a mesh graded anew.
+    tolerance : Of the change of log viscosity; the other tolerances stay.
+    Returns: With `converged` False and a `cause` if `max_iterations` did not suffice.
     """
     heat = uniform_heat(problem) if initial is None else initial
     scales, walls = problem.geometry.displacements.scales, walls or choose_walls(problem)
@@ -323,16 +296,16 @@ class _Progress:
         return f"{broken} of {cells} cells break the rupture condition"
 
     def hopeless(self, max_iterations: int) -> bool:
-        """Whether to give up."""
+        """Return whether to give up."""
         lost = self.stuck >= _UNREACHABLE_STEPS or self.beyond >= _BEYOND_LIMITS_STEPS
         return lost or not np.isfinite(self.history[-1]) or len(self.history) >= max_iterations
 
     def out_of_range(self, heat: Heat) -> bool:
-        """Whether the film left the range of temperatures, for good."""
+        """Return whether the film left the range of temperatures, for good."""
         return self.beyond >= _BEYOND_LIMITS_STEPS or _beyond_limits(heat.temperature)
 
     def _stagnates(self) -> bool:
-        """Whether the last iterations brought little against the best before them."""
+        """Return whether the last iterations brought little against the best before them."""
         recent = self.history[-_STAGNATION:]
         return min(recent) > 0.5 * min(self.history[:-_STAGNATION])
 
@@ -390,9 +363,7 @@ def _change(problem: FilmProblem, heat: Heat, mapped: Heat, moved: float) -> flo
     """
     coldest, hottest = float(mapped.temperature.min()), float(mapped.temperature.max())
     change = max(
-        moved,
-        float(np.abs(mapped.bush - heat.bush).max()),
-        abs(mapped.shaft - heat.shaft),
+        moved, float(np.abs(mapped.bush - heat.bush).max()), abs(mapped.shaft - heat.shaft)
     )
     near = problem.lubricant.law.viscosity(np.array([coldest, coldest + 1e-3]))
     thinning = float(np.log(near[0] / near[1])) / 1e-3

@@ -27,7 +27,6 @@ from numpy.typing import NDArray
 from .kernels import kernel
 
 Array = NDArray[np.float64]
-
 KAPPA, SUBLAYER = 0.4, 10.7
 """Reichardt's kappa and d (Ng 1964)."""
 TURBULENT_PRANDTL = 0.9
@@ -206,28 +205,20 @@ def integrate(
 ):  # fmt: skip
     """Fill all integrals of every column.
 
-    Parameters
-    ----------
-    table : array
-        Of `layer_tables`.
-    viscosity : (n, m, k) array
-        [Pa s]
-    thickness, laminar_f0 : (n, m) arrays
-        [m], [1/(Pa s)]
-    bulk : (3, 4) array
-        Shear, k_x, k_y of a bulk law: base, factor, exponent, added (see `_ratio`); base 0 without.
-    diffusion : float
-        c_p/(k Pr_t) [1/(Pa s)]; 0 where no heat is asked for: then the shares stay empty.
-    stresses : (n, m) array
-        First guess of the shear stress [Pa], overwritten; 0 without one.
+    table : Of `layer_tables`.
+    viscosity : (n, m, k) array [Pa s]
+    thickness, laminar_f0 : (n, m) arrays [m], [1/(Pa s)]
+    bulk : (3, 4) array. Shear, k_x, k_y of a bulk law: base, factor, exponent, added (see
+        `_ratio`); base 0 without.
+    diffusion : c_p/(k Pr_t) [1/(Pa s)]; 0 where no heat is asked for: then the shares stay empty.
+    stresses : (n, m) array. First guess of the shear stress [Pa], overwritten; 0 without one.
     weight, f0, f2, f2_axial, g, g_tangent : (n, m) arrays
-    rates : (3, n, m) array
-        d ln/d ln h of f2, f2_axial and 1 - g.
+    rates : (3, n, m) array. d ln/d ln h of f2, f2_axial and 1 - g.
     pressure_share, axial_share, shear_share : (n, m, k) arrays
-    heat_share : (4, n, m, k) array
-        Integrals over each layer by which the dissipation is shared; see `film.energy.dissipation`.
-    conduction : (n, m, k + 1) array
-        By how much the eddies multiply what layers (and walls) conduct to each other.
+    heat_share : (4, n, m, k) array. Integrals over each layer by which the dissipation is shared;
+        see `film.energy.dissipation`.
+    conduction : (n, m, k + 1) array. By how much the eddies multiply what layers (and walls)
+        conduct to each other.
     """
     n, m, layers = viscosity.shape
     dz = 1.0 / layers

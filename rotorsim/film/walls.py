@@ -31,15 +31,10 @@ Array = NDArray[np.float64]
 class FilmContact:
     """The film as one of its walls meets it.
 
-    Attributes
-    ----------
-    energy : EnergyProblem
-    film : (n, m) array
-        Temperature of the layer next to the wall [K].
-    conductance : (n, m) array
-        Between that layer and the wall [W/K].
-    elsewhere : float
-        Heat that the film loses to oil and other wall per degree that it warms [W/K], estimated.
+    film : (n, m) array. Temperature of the layer next to the wall [K].
+    conductance : (n, m) array. Between that layer and the wall [W/K].
+    elsewhere : Heat that the film loses to oil and other wall per degree that it warms [W/K],
+        estimated.
     """
 
     energy: EnergyProblem
@@ -83,14 +78,10 @@ class FilmContact:
 class _Wall(ABC):
     """One wall of the film. The bush's temperature is (n, m), the shaft's a single one.
 
-    Attributes
-    ----------
-    first : float
-        First guess of the surface temperature, the truth where it is given [K].
-    insulated : bool
-        Whether no heat passes anywhere.
-    floats : bool
-        Whether one temperature answers the film's net heat: then `FilmContact.elsewhere` counts.
+    first : First guess of the surface temperature, the truth where it is given [K].
+    insulated : Whether no heat passes anywhere.
+    floats : Whether one temperature answers the film's net heat: then `FilmContact.elsewhere`
+        counts.
     """
 
     first: float
@@ -186,10 +177,7 @@ class _ConductingBush(_Wall):
     def of(cls, problem: FilmProblem) -> _ConductingBush:
         """Build the bush of a film problem; the operators of recent meshes are kept.
 
-        Raises
-        ------
-        InputError
-            The bearing has no `bush_outer_radius`.
+        Raises InputError: The bearing has no `bush_outer_radius`.
         """
         mesh, thermal, bearing = problem.mesh, problem.thermal, problem.bearing
         outer = bearing.bush_outer_radius
@@ -236,11 +224,7 @@ class _ConductingBush(_Wall):
 class _ConductingPads(_Wall):
     """Pads that conduct to surroundings at `ambient` [K] behind, beside and before them.
 
-    Attributes
-    ----------
-    columns : tuple of (n,) bool arrays
-        Cells of each pad.
-    operators : tuple of BushOperator
+    columns : tuple of (n,) bool arrays. Cells of each pad.
     """
 
     columns: tuple[NDArray[np.bool_], ...]
@@ -320,13 +304,8 @@ def _conducting(problem: FilmProblem) -> _Wall:
 class Walls:
     """Both walls of a film.
 
-    Attributes
-    ----------
-    bush, shaft
-    pads : tuple of (n,) bool arrays
-        Cells of each pad; empty for a bore.
-    ring : float
-        Temperature of what the pads stand in [K].
+    pads : tuple of (n,) bool arrays. Cells of each pad; empty for a bore.
+    ring : Temperature of what the pads stand in [K].
     """
 
     bush: _Wall
@@ -364,10 +343,7 @@ _SHAFTS: dict[ShaftModel, Callable[[FilmProblem], _Wall]] = {
 def choose_walls(problem: FilmProblem) -> Walls:
     """Return the walls that the problem's thermal settings name.
 
-    Raises
-    ------
-    InputError
-        The bush conducts and the bearing has no `bush_outer_radius`.
+    Raises InputError: The bush conducts and the bearing has no `bush_outer_radius`.
     """
     thermal, region = problem.thermal, problem.mesh.region
     return Walls(

@@ -15,12 +15,8 @@ class BandForm:
 
     A band is (..., 2 width + 1, n), its entries where `scipy.linalg.solve_banded` has them.
 
-    Attributes
-    ----------
-    place : (n,) int array
-        Where each unknown stands in that order.
-    width : int
-        Number of diagonals on each side of the main one.
+    place : (n,) int array. Where each unknown stands in that order.
+    width : Number of diagonals on each side of the main one.
     """
 
     place: NDArray[np.intp]

@@ -30,14 +30,12 @@ class StabilityMap:
 
     Between tilting pads, of rotor and pads together.
 
-    Attributes
-    ----------
-    dataset : xarray.Dataset
-        Over the table's dimensions and ``mass``: ``growth_rate`` [1/s] (largest real part of the
-        eigenvalues), ``verdict`` (1 stable, 0 unstable, -1 unknown), ``mass_margin`` (1 - mass
-        over critical mass, NaN without a threshold). Without ``mass``: ``critical_mass`` [kg],
-        ``whirl_frequency_ratio``, ``stability``. Without ``thermal_model``, where the table has
-        both models: ``destabilised_by_heating``, stable isothermally and unstable with THD.
+    dataset : xarray.Dataset. Over the table's dimensions and ``mass``: ``growth_rate`` [1/s]
+        (largest real part of the eigenvalues), ``verdict`` (1 stable, 0 unstable, -1 unknown),
+        ``mass_margin`` (1 - mass over critical mass, NaN without a threshold). Without ``mass``:
+        ``critical_mass`` [kg], ``whirl_frequency_ratio``, ``stability``. Without ``thermal_model``,
+        where the table has both models: ``destabilised_by_heating``, stable isothermally and
+        unstable with THD.
     """
 
     dataset: xr.Dataset
@@ -50,18 +48,11 @@ class StabilityMap:
     def plane(self, first: str, second: str, **fixed: object) -> xr.Dataset:
         """Cut the map to two of its dimensions (and the thermal models).
 
-        Parameters
-        ----------
-        first, second : str
-            Any two of ``speed``, ``mass``, ``radial_clearance`` and the table's further ones.
-        **fixed
-            Where the other dimensions are held; the nearest tabulated value is taken. A dimension
-            with one value need not be named.
-
-        Raises
-        ------
-        InputError
-            A dimension is unknown, or one with several values is not fixed.
+        first, second : Any two of ``speed``, ``mass``, ``radial_clearance`` and the table's further
+            ones.
+        **fixed : Where the other dimensions are held; the nearest tabulated value is taken. A
+            dimension with one value need not be named.
+        Raises InputError: A dimension is unknown, or one with several values is not fixed.
         """
         dataset = self.dataset
         for name in (first, second, *fixed):

@@ -24,11 +24,7 @@ ComplexArray = NDArray[np.complex128]
 class OutputFeedback:
     """z' = A z + B y + W (f - u), u = C z + D y: forces u from sensors y, f after saturation.
 
-    Attributes
-    ----------
-    a, b, c, d, w : arrays
-    max_force : float
-        Of each actuator's axis [N].
+    max_force : Of each actuator's axis [N].
     """
 
     a: Array
@@ -52,21 +48,11 @@ def regulator(
 ) -> OutputFeedback:  # fmt: skip
     """Linear-quadratic regulator with a Kalman filter that knows the sensors only.
 
-    Parameters
-    ----------
-    system : control.StateSpace
-        Small: forces at the actuators to displacements at the sensors.
-    displacement_scale, force_scale : float
-        As bad as each other [m], [N].
-    noise : float
-        Of the sensors, against a disturbance of `force_scale` at the actuators [m].
-    max_force : float
-        [N]; the filter knows of the saturation.
-
-    Raises
-    ------
-    InputError
-        An unstable mode is not reached by the actuators or not seen by the sensors.
+    system : Small: forces at the actuators to displacements at the sensors.
+    displacement_scale, force_scale : As bad as each other [m], [N].
+    noise : Of the sensors, against a disturbance of `force_scale` at the actuators [m].
+    max_force : [N]; the filter knows of the saturation.
+    Raises InputError: An unstable mode is not reached by the actuators or not seen by the sensors.
     """
     a, b, c = (np.asarray(part, dtype=float) for part in (system.A, system.B, system.C))
     # In units of the scales.
@@ -104,16 +90,9 @@ def pd_of_sensors(
 ) -> OutputFeedback:
     """PD from each sensor to the actuator of the same number, of least growth rate.
 
-    Parameters
-    ----------
-    system : control.StateSpace
-        Small; as many forces as displacements.
-    corner : float
-        Where the derivative ends: kp + kd s/(1 + s/corner) [rad/s].
-    max_force : float
+    system : Small; as many forces as displacements.
+    corner : Where the derivative ends: kp + kd s/(1 + s/corner) [rad/s].
 
-    Notes
-    -----
     One pair of gains for x and y of every actuator, of either sign (a sensor beyond a node of the
     mode needs the other one), by trial over decades, then Nelder and Mead's simplex.
     """
@@ -188,16 +167,10 @@ def modulus_margin(system: control.StateSpace, feedback: OutputFeedback) -> floa
 class LinearMotion:
     """Motion of a machine at its sensors, and its actuators' forces.
 
-    Attributes
-    ----------
-    t : (n,) array
-        [s]
-    displacement : (n, outputs) array
-        [m]
-    force : (n, inputs) array
-        [N]
-    size : (n,) array
-        Largest displacement of any unknown of displacement given by `watched` [m].
+    t : (n,) array [s]
+    displacement : (n, outputs) array [m]
+    force : (n, inputs) array [N]
+    size : (n,) array. Largest displacement of any unknown of displacement given by `watched` [m].
     """
 
     t: Array
@@ -213,18 +186,11 @@ def run_in_time(
 ) -> LinearMotion:  # fmt: skip
     """Integrate the whole machine, with its feedback or without, from a state.
 
-    Parameters
-    ----------
-    system : control.StateSpace
     start : (n,) array
-    duration, step : float
-        [s]
-    feedback : OutputFeedback, optional
-    watched : (m, n) array, optional
-        Further displacements from the state, for `LinearMotion.size`; by default the outputs.
+    duration, step : [s]
+    watched : (m, n) array. Further displacements from the state, for `LinearMotion.size`; by
+        default the outputs.
 
-    Notes
-    -----
     By the matrix exponential: exact as long as no actuator saturates; what saturation takes away is
     held over a step.
     """

@@ -20,7 +20,6 @@ from ..threads import on_one_blas_thread
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _DECAYING = 1e-9
 """Of the largest eigenvalue: slower modes count as unstable and are kept."""
 _ABOUT = np.concatenate([-np.geomspace(10.0, 0.1, 9), [0.0], np.geomspace(0.1, 10.0, 9)])
@@ -31,18 +30,11 @@ _ABOUT = np.concatenate([-np.geomspace(10.0, 0.1, 9), [0.0], np.geomspace(0.1, 1
 class Reduction:
     """A reduced model and how far it may be off.
 
-    Attributes
-    ----------
-    system : control.StateSpace
-        Same inputs and outputs.
-    kept_exactly : int
-        States of modes that do not decay.
-    hankel : (n,) array
-        Hankel singular values of the stable part, falling [output/input].
-    bound, error : float
-        H-infinity norm of the error: proven bound, and the largest found over frequency.
-    scale : float
-        Largest gain of the stable part over frequency.
+    system : Same inputs and outputs.
+    kept_exactly : States of modes that do not decay.
+    hankel : (n,) array. Hankel singular values of the stable part, falling [output/input].
+    bound, error : H-infinity norm of the error: proven bound, and the largest found over frequency.
+    scale : Largest gain of the stable part over frequency.
     """
 
     system: control.StateSpace
@@ -57,18 +49,9 @@ class Reduction:
 def reduced(system: control.StateSpace, error: float = 1e-3, order: int | None = None) -> Reduction:
     """Reduce a system by balanced truncation of its stable part.
 
-    Parameters
-    ----------
-    system : control.StateSpace
-    error : float
-        Bound on the H-infinity norm of the error, as a share of the stable part's own.
-    order : int, optional
-        Of the stable part, in place of `error`.
-
-    Raises
-    ------
-    InputError
-        The system has no state that decays.
+    error : Bound on the H-infinity norm of the error, as a share of the stable part's own.
+    order : Of the stable part, in place of `error`.
+    Raises InputError: The system has no state that decays.
     """
     from scipy.linalg import schur, solve_continuous_lyapunov, solve_sylvester, svd
 

@@ -21,13 +21,9 @@ _AT_ONCE = 64
 class UnbalanceResponse:
     """Synchronous motion q = Re(Q exp(i Omega t)) over speed.
 
-    Attributes
-    ----------
-    machine : Machine
-    speed : (n,) array
-        [rad/s]
-    amplitude : (n, size) complex array
-        Q of every unknown of the machine [m, rad]; NaN where a support has no coefficients.
+    speed : (n,) array [rad/s]
+    amplitude : (n, size) complex array. Q of every unknown of the machine [m, rad]; NaN where a
+        support has no coefficients.
     """
 
     machine: Machine

@@ -40,14 +40,9 @@ _SELF_ADJOINT = 1e-7
 class Eigenmodes:
     """Modes at one parameter.
 
-    Attributes
-    ----------
-    values : (k,) complex array
-        [rad/s]
-    accuracy : (k,) array
-        Estimated bound of each eigenvalue's error [rad/s].
-    shapes : (k, m) complex array
-        Displacements, of unit length.
+    values : (k,) complex array [rad/s]
+    accuracy : (k,) array. Estimated bound of each eigenvalue's error [rad/s].
+    shapes : (k, m) complex array. Displacements, of unit length.
     """
 
     values: ComplexArray
@@ -135,8 +130,6 @@ def _every_mode(mass: Array, damping: Array, stiffness: Array) -> Eigenmodes | N
 def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:
     """All modes of one state matrix whose first states are `unknowns` displacements.
 
-    Notes
-    -----
     After balancing, the error of an eigenvalue is some roundings of the matrix' norm over the
     cosine between its left and its right eigenvector (Golub & Van Loan, Matrix Computations,
     7.2.2). A free direction is a double eigenvalue zero with one eigenvector: the computed cosine
@@ -157,17 +150,10 @@ def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:
 def lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes | None:
     """Lowest modes of a machine: 2 `count` or a few more, ascending in modulus; None: not known.
 
-    Parameters
-    ----------
-    machine : Machine
-        Unknowns without mass or damping are allowed.
-    count : int
-        Pairs of eigenvalues.
-    speed : float
-        [rad/s]
+    machine : Unknowns without mass or damping are allowed.
+    count : Pairs of eigenvalues.
+    speed : [rad/s]
 
-    Notes
-    -----
     Block Arnoldi on the inverse of the first-order pencil, shifted on the real axis to minus the
     speed, or a small part of the highest frequency, so that a free rotor's zero eigenvalues are
     regular. Masses are scaled to 1 and time to the shift. A mode counts where its relative residual

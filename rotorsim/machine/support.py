@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Matrices = tuple[Array, Array, Array]
-
 _JOURNAL = ("x", "y", "theta_x", "theta_y")
 """Unknowns of a bearing that are its node's."""
 _SPEED_TOLERANCE = 1e-9
@@ -58,10 +57,7 @@ class Support(ABC):
 
         NaN marks a speed without coefficients, next to a point that did not converge.
 
-        Raises
-        ------
-        OutOfRangeError
-            A speed [rad/s] lies outside `speeds`.
+        Raises OutOfRangeError: A speed [rad/s] lies outside `speeds`.
         """
 
     def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
@@ -79,14 +75,9 @@ class Support(ABC):
 class ConstantSupport(Support):
     """Stiffness, damping and mass that do not change with speed.
 
-    Parameters
-    ----------
-    stiffness, damping, mass : array-like
-        (m, m) matrices, m values of the diagonal, or one value for x and y (SI).
-    unknowns : tuple of str
-    coupled : int or None
-        How many of them are the node's; None: all.
-    carries_load : bool
+    stiffness, damping, mass : array-like. (m, m) matrices, m values of the diagonal, or one value
+        for x and y (SI).
+    coupled : How many of them are the node's; None: all.
     """
 
     stiffness: ArrayLike
@@ -121,13 +112,8 @@ def cross_stiffness(value: float) -> ConstantSupport:
 class TableSupport(Support):
     """One curve of a coefficient table: 2 x 2 stiffness and damping over speed.
 
-    Parameters
-    ----------
-    curve : CoefficientInterpolator
-        From `CoefficientTable.interpolator`.
-    mass : array-like
-        Added mass [kg], as for `ConstantSupport`.
-    carries_load : bool
+    curve : From `CoefficientTable.interpolator`.
+    mass : array-like. Added mass [kg], as for `ConstantSupport`.
     """
 
     curve: CoefficientInterpolator
@@ -152,16 +138,9 @@ class TableSupport(Support):
 class MatrixTable(Support):
     """Matrices of any size over speed: a film with its pads, journal rotations, a seal.
 
-    Parameters
-    ----------
-    table_speeds : (n,) array
-        Ascending [rad/s].
-    stiffness, damping, mass : (n, m, m) arrays
-        SI; `mass` may be left out.
-    unknowns : tuple of str
-    coupled : int
-        How many of the unknowns, the first ones, are the node's.
-    carries_load : bool
+    table_speeds : (n,) array. Ascending [rad/s].
+    stiffness, damping, mass : (n, m, m) arrays. SI; `mass` may be left out.
+    coupled : How many of the unknowns, the first ones, are the node's.
     """
 
     table_speeds: Array
@@ -192,16 +171,9 @@ class MatrixTable(Support):
         A pad that carries load at some of the speeds only is eliminated where it does, at the
         shaft's frequency; the others keep their unknowns.
 
-        Parameters
-        ----------
-        table : CoefficientTable
-        **choices
-            What `CoefficientTable.select` needs to leave one curve over speed.
-
-        Raises
-        ------
-        InputError
-            The table has no pads, more than one curve, or a point that did not converge.
+        **choices : What `CoefficientTable.select` needs to leave one curve over speed.
+        Raises InputError: The table has no pads, more than one curve, or a point that did not
+            converge.
         """
         one = table.select(**choices).dataset
         if "full_stiffness" not in one:
@@ -273,11 +245,7 @@ class MatrixTable(Support):
 def table_support(table: CoefficientTable, **choices: Any) -> Support:
     """Return one curve of a table: with its pads, where it has some and all points converged.
 
-    Parameters
-    ----------
-    table : CoefficientTable
-    **choices
-        What `CoefficientTable.select` needs to leave one curve over speed.
+    **choices : What `CoefficientTable.select` needs to leave one curve over speed.
     """
     one = table.select(**choices)
     if "full_stiffness" in one.dataset and one.converged.all():
@@ -289,15 +257,10 @@ def table_support(table: CoefficientTable, **choices: Any) -> Support:
 class Pedestal(Support):
     """A support whose housing stands on springs: a pedestal in series.
 
-    Parameters
-    ----------
-    inner : Support
-        Between the node and the housing; its own unknowns are measured from the housing.
-    mass, stiffness, damping : array-like
-        Of the housing on its pedestal, along x and y, as for `ConstantSupport`.
+    inner : Between the node and the housing; its own unknowns are measured from the housing.
+    mass, stiffness, damping : array-like. Of the housing on its pedestal, along x and y, as for
+        `ConstantSupport`.
 
-    Notes
-    -----
     With T q the displacements relative to the housing, the inner matrices become T' K T, and the
     pedestal's are added on the housing's own x and y. A pad's inertia counts relative to the
     housing.
@@ -424,10 +387,7 @@ def _square(value: ArrayLike, size: int, name: str) -> Array:
 def common_speeds(supports: Sequence[Support]) -> Array:
     """Tabulated speeds (n,) [rad/s] of all supports, within the range that all of them know.
 
-    Raises
-    ------
-    InputError
-        Their tables have no speed in common.
+    Raises InputError: Their tables have no speed in common.
     """
     tables = [support.speeds for support in supports if support.speeds.size]
     if not tables:

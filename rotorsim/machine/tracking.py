@@ -29,30 +29,14 @@ def track_modes(
 ) -> Modes:
     """Follow eigenvalues over a parameter.
 
-    Parameters
-    ----------
-    spectrum : Spectrum
-        Modes at any parameter.
-    parameter : (n,) array
-        Ascending; the result is given at these values.
-    refinements : int
-        How often a step may be halved until neighbouring modes are alike.
-    wanted : int, optional
-        Number of eigenvalues of lowest modulus that must be followed smoothly; all by default. More
-        may be returned: those that `spectrum` gives throughout.
+    spectrum : Modes at any parameter.
+    parameter : (n,) array. Ascending; the result is given at these values.
+    refinements : How often a step may be halved until neighbouring modes are alike.
+    wanted : Number of eigenvalues of lowest modulus that must be followed smoothly; all by default.
+        More may be returned: those that `spectrum` gives throughout.
+    Returns: First column: the mode least stable at the first value.
+    Raises InputError: The parameter does not ascend, or the modes are not known somewhere.
 
-    Returns
-    -------
-    Modes
-        First column: the mode least stable at the first value.
-
-    Raises
-    ------
-    InputError
-        The parameter does not ascend, or the modes are not known somewhere.
-
-    Notes
-    -----
     Modes at neighbouring values are paired by an optimal assignment (Jonker and Volgenant) on the
     change of eigenvalue plus 1 - MAC, the modal assurance criterion of the displacements. Sorting
     by frequency exchanges modes that cross; this does not. A step is accepted when every pair has

@@ -61,7 +61,7 @@ def _check_fit(bearing: Bearing, thermal: ThermalSettings) -> None:
 
 
 def _centred(bearing: Bearing, film: FilmSettings, key: str) -> str:
-    """Why a film without load cannot be computed as asked, and what to write; or nothing."""
+    """Return why a film without load cannot be computed as asked, and what to write; or nothing."""
     if not (bearing.is_plain and bearing.is_symmetric):
         if key == "load":
             return ""

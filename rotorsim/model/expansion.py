@@ -29,10 +29,7 @@ class BushFit(StrEnum):
 class HousingFit:
     """A housing that gives way.
 
-    Parameters
-    ----------
-    stiffness : float
-        Radial force on the bush's outer surface, summed over it, per radial growth [N/m].
+    stiffness : Radial force on the bush's outer surface, summed over it, per radial growth [N/m].
     """
 
     stiffness: Stiffness
@@ -45,18 +42,12 @@ class HousingFit:
 class Expansion:
     """Thermal expansion; the clearances given are those at the reference temperature.
 
-    Parameters
-    ----------
-    shaft, bush : float
-        Coefficients of linear expansion [1/K]; with tilting pads the bush is the ring that holds
-        the pivots, at ambient temperature.
-    pads : float or None
-        Of tilting pads [1/K]; None: the bush's.
-    reference_temperature : float
-        At which the clearances are measured [K].
+    shaft, bush : Coefficients of linear expansion [1/K]; with tilting pads the bush is the ring
+        that holds the pivots, at ambient temperature.
+    pads : Of tilting pads [1/K]; None: the bush's.
+    reference_temperature : At which the clearances are measured [K].
     bush_fit : BushFit or HousingFit
-    youngs_modulus, poisson_ratio : float
-        Of the bush [Pa], for a bush that is held.
+    youngs_modulus, poisson_ratio : Of the bush [Pa], for a bush that is held.
     """
 
     shaft: Coefficient = STEEL_EXPANSION
@@ -83,10 +74,7 @@ class Expansion:
         its radii grow by alpha r T whatever T(r) is, T its mean over the area; the housing's
         pressure p gives way to alpha b T - p [(a2 + b2)/(b2 - a2) - nu] b/E.
 
-        Parameters
-        ----------
-        inner, outer, length : float
-            Of the ring [m]; a free ring needs no outer radius.
+        inner, outer, length : Of the ring [m]; a free ring needs no outer radius.
         """
         strain = self.bush * (temperature - self.reference_temperature)
         if self.bush_fit is BushFit.FREE or outer is None:
@@ -109,14 +97,9 @@ class Expansion:
         falls outwards: a circle of radius r_m (1 - alpha r_m dT/dr) at mid-thickness, free of
         stress.
 
-        Parameters
-        ----------
-        inner, thickness : float
-            [m]
-        temperature : float
-            Mean [K].
-        gradient : float
-            dT/dr [K/m].
+        inner, thickness : [m]
+        temperature : Mean [K].
+        gradient : dT/dr [K/m].
         """
         coefficient = self.bush if self.pads is None else self.pads
         strain = coefficient * (temperature - self.reference_temperature)

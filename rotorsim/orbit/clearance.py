@@ -12,7 +12,6 @@ from ..model import Bearing
 from ..model.bearing import angle_between
 
 Array = NDArray[np.float64]
-
 _ANGLES = 720
 _BLOCK = 4096
 """Positions looked at together: bounds the memory."""
@@ -21,18 +20,11 @@ _BLOCK = 4096
 def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
     """Closed line of the journal's positions at which it touches the bush.
 
-    Parameters
-    ----------
-    bearing : Bearing
-        In the frame of the line.
-    count : int
-        Points on the line, the last one the first again.
-
-    Returns
-    -------
-    (count, 2) array
-        At mid-plane [m]; the clearance circle of the plain, aligned bearing. Between tilting pads,
-        which turn out of the way, the lines on which a pivot stands in the journal's.
+    bearing : In the frame of the line.
+    count : Points on the line, the last one the first again.
+    Returns (count, 2) array: At mid-plane [m]; the clearance circle of the plain, aligned bearing.
+        Between tilting pads, which turn out of the way, the lines on which a pivot stands in the
+        journal's.
 
     Examples
     --------
@@ -73,19 +65,11 @@ def _ends(bearing: Bearing) -> tuple[float, ...]:
 def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
     """Smallest film thickness [m] on the lands with the journal's centre at x, y [m].
 
-    Parameters
-    ----------
-    bearing : Bearing
-        In the frame of x and y.
-    x, y : (n,) arrays
-        At mid-plane [m].
-
-    Returns
-    -------
-    (n,) array
-        Zero or less where they touch. c - e for the plain, aligned bearing; else the least over
-        angles half a degree apart and over both ends of a tilted journal. Of tilting pads, that at
-        their pivots, where these do not give way.
+    bearing : In the frame of x and y.
+    x, y : (n,) arrays. At mid-plane [m].
+    Returns (n,) array: Zero or less where they touch. c - e for the plain, aligned bearing; else
+        the least over angles half a degree apart and over both ends of a tilted journal. Of tilting
+        pads, that at their pivots, where these do not give way.
     """
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance - np.hypot(x, y)

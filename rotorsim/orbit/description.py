@@ -113,7 +113,7 @@ ORBIT_HEADS = {
 
 
 def orbit_texts(said: Mapping[str, Any]) -> dict[str, str]:
-    """What `describe_orbit` gives as short texts, by the keys of `ORBIT_HEADS`."""
+    """Return what `describe_orbit` gives as short texts, by the keys of `ORBIT_HEADS`."""
     first, last = (speed * RPM for speed in said["speed"])
     steady = math.isclose(first, last)
     return {
@@ -130,7 +130,7 @@ def orbit_texts(said: Mapping[str, Any]) -> dict[str, str]:
 
 
 def _orbit_rows(said: Mapping[str, Any]) -> list[Row]:
-    """What an orbit comes to, row by row, from what `describe_orbit` gives."""
+    """Return what an orbit comes to, row by row, from what `describe_orbit` gives."""
     texts = orbit_texts(said)
     rows = [
         Row("run", f"{texts['run']}, {said['force']} film force"),

@@ -32,7 +32,6 @@ from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import Method, OrbitProblem
 
 Array = NDArray[np.float64]
-
 _CHUNK_REVOLUTIONS = 32
 
 
@@ -68,25 +67,13 @@ def simulate(
 ) -> Orbit:
     """Integrate one orbit to its end, touch-down or failure.
 
-    Parameters
-    ----------
-    problem : OrbitProblem
-    consume : callable, optional
-        Called with each piece as soon as it is there: to show it, or to write it out.
-    keep_revolutions : int, optional
-        Keep the last so many revolutions only (to the next whole piece), so that memory does not
-        grow with the run; the smallest film before them stays as an event ``minimum_film``.
-
-    Returns
-    -------
-    Orbit
-        With ``status``: never an exception for what happens in the run.
-
-    Raises
-    ------
-    InputError
-        Start outside the clearance, speeds outside the coefficients' range, or a static load that
-        no position carries.
+    consume : Called with each piece as soon as it is there: to show it, or to write it out.
+    keep_revolutions : Keep the last so many revolutions only (to the next whole piece), so that
+        memory does not grow with the run; the smallest film before them stays as an event
+        ``minimum_film``.
+    Returns: With ``status``: never an exception for what happens in the run.
+    Raises InputError: Start outside the clearance, speeds outside the coefficients' range, or a
+        static load that no position carries.
     """
     pieces: deque[Orbit] = deque()
     dropped: OrbitEvent | None = None
@@ -133,16 +120,8 @@ def simulate_pieces(
 ) -> Iterator[Orbit]:
     """Integrate piece by piece, so that a long run can be streamed, thinned or written out.
 
-    Parameters
-    ----------
-    problem : OrbitProblem
-    revolutions : int
-        Of the shaft in each piece.
-
-    Yields
-    ------
-    Orbit
-        Status ``running`` but for the last.
+    revolutions : Of the shaft in each piece.
+    Yields Orbit : Status ``running`` but for the last.
     """
     run, state = _prepare(problem)
     edges = _edges(problem, revolutions)

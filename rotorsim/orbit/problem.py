@@ -39,17 +39,9 @@ class Method(StrEnum):
 class SpeedSchedule:
     """Speed as straight pieces between knots.
 
-    Parameters
-    ----------
-    times : tuple of float
-        Knots [s], ascending, the first is 0; the last is the end of the run.
-    speeds : tuple of float
-        At the knots [rad/s], none negative.
-
-    Raises
-    ------
-    InputError
-        Knots out of order, a negative speed, or a piece without rotation.
+    times : Knots [s], ascending, the first is 0; the last is the end of the run.
+    speeds : At the knots [rad/s], none negative.
+    Raises InputError: Knots out of order, a negative speed, or a piece without rotation.
 
     Examples
     --------
@@ -154,12 +146,8 @@ class Controller:
 
     z' = A z + B s and force = C z + D s, s = (x - xr, y - yr, vx, vy).
 
-    Parameters
-    ----------
-    a, b, c, d : arrays of shape (k, k), (k, 4), (2, k), (2, 4)
-        k = 0 for plain state feedback.
-    reference : tuple of float
-        (xr, yr) [m].
+    a, b, c, d : arrays of shape (k, k), (k, 4), (2, k), (2, 4). k = 0 for plain state feedback.
+    reference : (xr, yr) [m].
     """
 
     a: Array
@@ -192,46 +180,28 @@ class Controller:
 class OrbitProblem:
     """Rotor, film force, loads, speed and start (SI, load frame).
 
-    Parameters
-    ----------
-    force : BearingForce
-    rotor : Rotor
-        The film carries its first node; every node has x and y with mass. Tilting pads on a film
-        that is solved become its last unknowns.
-    schedule : SpeedSchedule
-    static_load : (float, float)
-        Shared out over the nodes as their masses [N]; (0, 0) switches it off.
-    initial_displacement : (float, float)
-        Of the journal from `equilibrium` [m].
-    initial_velocity : (float, float)
-        Of the journal [m/s].
-    equilibrium : (float, float) or None
-        Where the start is measured from [m]; None: the force's own static position at the first
-        speed.
-    initial_state : array or None
-        Displacements, velocities and controller states, in place of the three above.
-    loads : tuple of Load
-        Steps, harmonic forces, motion of the base.
-    controller : Controller or None
-        Actuator force on the journal.
-    minimum_film : float
-        Film thickness at which the run ends with ``touch_down`` [m] (the surfaces' roughness).
-    stop_at_contact : bool
-        With False a linear model runs on outside the clearance circle, where it means nothing;
-        for tests of the model itself.
-    samples_per_revolution : int
-    thermal_model : str
-        Label of the film behind the force.
-    bearing : Bearing or None
-        In the load frame; its lobes and tilt then decide the film thickness. None: a plain bearing
-        of the force's clearance.
-    kind, note : str
-        Labels of the orbit.
-    method : Method
-    relative_tolerance : float or None
-        Of one integration step; the absolute one is 1e-3 of it times the clearance. None: 1e-8
-        with linear coefficients, whose growth is to be measured, 1e-7 with a nonlinear film, 1e-5
-        with one that is solved at each step.
+    rotor : The film carries its first node; every node has x and y with mass. Tilting pads on a
+        film that is solved become its last unknowns.
+    static_load : (float, float). Shared out over the nodes as their masses [N]; (0, 0) switches it
+        off.
+    initial_displacement : (float, float). Of the journal from `equilibrium` [m].
+    initial_velocity : (float, float). Of the journal [m/s].
+    equilibrium : (float, float) or None. Where the start is measured from [m]; None: the force's
+        own static position at the first speed.
+    initial_state : Displacements, velocities and controller states, in place of the three above.
+    loads : Steps, harmonic forces, motion of the base.
+    controller : Actuator force on the journal.
+    minimum_film : Film thickness at which the run ends with ``touch_down`` [m] (the surfaces'
+        roughness).
+    stop_at_contact : With False a linear model runs on outside the clearance circle, where it means
+        nothing; for tests of the model itself.
+    thermal_model : Label of the film behind the force.
+    bearing : In the load frame; its lobes and tilt then decide the film thickness. None: a plain
+        bearing of the force's clearance.
+    kind, note : Labels of the orbit.
+    relative_tolerance : Of one integration step; the absolute one is 1e-3 of it times the
+        clearance. None: 1e-8 with linear coefficients, whose growth is to be measured, 1e-7 with a
+        nonlinear film, 1e-5 with one that is solved at each step.
     """
 
     force: BearingForce

@@ -43,10 +43,7 @@ _STYLE = """
 def point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
     """Solve the scenario of `text`; return numbers, verdict and pictures, or what is wrong.
 
-    Returns
-    -------
-    dict
-        ``rows`` (label, text, unit, SI value), ``verdicts``, ``notes``, ``pictures`` (SVG); or
+    Returns: ``rows`` (label, text, unit, SI value), ``verdicts``, ``notes``, ``pictures`` (SVG); or
         ``error``.
     """
     from .figures.bearing import bearing_drawing, film_profiles
@@ -393,20 +390,10 @@ def _escaped(text: str) -> str:
 def serve(scenario: Scenario, *, port: int = 8090, units: str = "si", browser: bool = True) -> None:
     """Serve the page at 127.0.0.1 until interrupted.
 
-    Parameters
-    ----------
-    scenario : Scenario
-        Where the values begin.
-    port : int
-    units : str
-        ``si`` or ``us`` at first.
-    browser : bool
-        Open the page in the user's browser.
-
-    Raises
-    ------
-    InputError
-        NiceGUI is not installed, or something else is served at the port.
+    scenario : Where the values begin.
+    units : ``si`` or ``us`` at first.
+    browser : Open the page in the user's browser.
+    Raises InputError: NiceGUI is not installed, or something else is served at the port.
     """
     try:
         from nicegui import app, ui

@@ -58,15 +58,9 @@ _TYPED = {"µm": "um", "°C": "degC", "°F": "degF", "mPa s": "mPa*s", "klbf/in"
 class Knob:
     """An entry of a scenario that is varied.
 
-    Attributes
-    ----------
-    path : tuple
-        Where it stands.
-    label : str
-    base : str
-        Unit of `value`, `low` and `high`; empty for pure numbers.
-    value, low, high : float
-        Now, and the ends of a slider.
+    path : Where it stands.
+    base : Unit of `value`, `low` and `high`; empty for pure numbers.
+    value, low, high : Now, and the ends of a slider.
     """
 
     path: Path
@@ -177,10 +171,7 @@ def varied(scenario: Scenario, values: Mapping[Knob, float]) -> Scenario:
 
     One speed and one clearance remain.
 
-    Raises
-    ------
-    InputError
-        A value is refused.
+    Raises InputError: A value is refused.
     """
     tables = tomllib.loads(scenario.text)
     for knob, value in values.items():
@@ -197,12 +188,8 @@ def varied(scenario: Scenario, values: Mapping[Knob, float]) -> Scenario:
 def point_of(scenario: Scenario, fine: bool) -> tuple[OperatingPoint, list[StabilityCurve]]:
     """Solve the scenario's point, `fine` on its own mesh, otherwise on a coarse one.
 
-    Returns
-    -------
-    point : OperatingPoint
-        Of the last thermal model, with its fields.
-    curves : list of StabilityCurve
-        Of the scenario's rotor at this speed, one for each thermal model.
+    Returns point : Of the last thermal model, with its fields.
+    Returns curves : Of the scenario's rotor at this speed, one for each thermal model.
     """
 
     def solved(chosen: Scenario) -> tuple[OperatingPoint, list[StabilityCurve]]:

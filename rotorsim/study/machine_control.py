@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
-
 _STEPS = 256
 """Of a revolution in time, at least."""
 _LEAST_ERROR = 1e-8
@@ -48,23 +47,15 @@ _CORNER = 10.0
 class MachineControlStudy:
     """Feedback of a machine's actuators and what it does (SI).
 
-    Attributes
-    ----------
-    speed, disturbance : float
-        [rad/s], [m]
-    design : Design
-    actuators, sensors : tuple of float
-        Places [m].
-    system : control.StateSpace
-        The whole machine: forces at the actuators to displacements at the sensors, x and y of each.
-    reduction : Reduction
-    feedback : OutputFeedback
-    passive_eigenvalues, controlled_eigenvalues : complex arrays
-        Of the whole machine [1/s], least stable first.
-    margin : float
-        See `modulus_margin`.
-    passive, controlled : LinearMotion or None
-        Of the whole machine, from the shape of its least stable mode; None without a run.
+    speed, disturbance : [rad/s], [m]
+    actuators, sensors : Places [m].
+    system : The whole machine: forces at the actuators to displacements at the sensors, x and y of
+        each.
+    passive_eigenvalues, controlled_eigenvalues : complex arrays. Of the whole machine [1/s], least
+        stable first.
+    margin : See `modulus_margin`.
+    passive, controlled : Of the whole machine, from the shape of its least stable mode; None
+        without a run.
     """
 
     speed: float
@@ -112,27 +103,15 @@ def study_machine_control(
 ) -> MachineControlStudy:
     """Design a machine's feedback at one speed, and try it on the whole linear machine.
 
-    Parameters
-    ----------
-    description : MachineFile
-    machine : Machine
-        Its films solved, see `rotorsim.study.machines.assembled`.
-    settings : MachineControl
-    disturbance : float
-        Largest displacement at the start of the run in time [m].
-    revolutions : int
-        Of that run; 0: none.
+    machine : Its films solved, see `rotorsim.study.machines.assembled`.
+    disturbance : Largest displacement at the start of the run in time [m].
+    revolutions : Of that run; 0: none.
 
-    Notes
-    -----
     Where a design on the reduced machine does not hold the whole one, whose other modes it drives,
     the reduction's error is lowered by tens.
 
-    Raises
-    ------
-    InputError
-        A place is off the shaft, an unstable mode is out of reach, or nothing says which force is
-        large.
+    Raises InputError: A place is off the shaft, an unstable mode is out of reach, or nothing says
+        which force is large.
     """
     places = {
         word: tuple(
@@ -186,8 +165,7 @@ def _designed(small: Any, settings: MachineControl, speed: float) -> OutputFeedb
     large = settings.force_scale or (limit if math.isfinite(limit) else None)
     if large is None:
         raise InputError(
-            'is missing, or max_force: which force is large? "500 N" say',
-            key="control.force_scale",
+            'is missing, or max_force: which force is large? "500 N" say', key="control.force_scale"
         )
     return regulator(small, settings.displacement_scale, large, settings.noise, limit)
 

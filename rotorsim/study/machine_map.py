@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
 
 Array = NDArray[np.float64]
-
 _CELLS = 25
 _SPANS = {
     "radial_clearance": np.linspace(0.7, 1.4, 7),
@@ -57,39 +56,22 @@ def map_of_machine(
 ) -> Plane:
     """Growth rate of the least stable mode over two parameters of a machine.
 
-    Parameters
-    ----------
-    machine : MachineFile
-    x, y : str
-        Names of parameters, see `rotorsim.files.parameters`: ``speed``, ``left.radial_clearance``.
-    values : mapping, optional
-        ``x`` and ``y``: values with units, or ``"start : stop : count"``; at those of a film's
+    x, y : Names of parameters, see `rotorsim.files.parameters`: ``speed``,
+        ``left.radial_clearance``.
+    values : ``x`` and ``y``: values with units, or ``"start : stop : count"``; at those of a film's
         parameter the films are solved. By default a span about the file's value.
-    held : mapping, optional
-        Values with units of other parameters, by name; ``speed`` is by default the highest.
-    models : sequence of str, optional
-        Thermal models; by default those of the bearings' files.
-    mesh : MeshSize, optional
-        In place of the bearings' own.
-    cells : int
-        Values along each axis, from its first to its last; 0: those given.
-    workers, progress
-        As for `rotorsim.tabulate`.
-
-    Returns
-    -------
-    Plane
-        Its dataset has ``growth_rate`` [1/s], ``damped_frequency`` [rad/s] of that mode and
+    held : Values with units of other parameters, by name; ``speed`` is by default the highest.
+    models : Thermal models; by default those of the bearings' files.
+    mesh : In place of the bearings' own.
+    cells : Values along each axis, from its first to its last; 0: those given.
+    workers, progress : As for `rotorsim.tabulate`.
+    Returns: Its dataset has ``growth_rate`` [1/s], ``damped_frequency`` [rad/s] of that mode and
         ``verdict`` (1 stable, 0 unstable, 2 undamped, -1 unknown). Where films were solved at some
         values along an axis, the coefficients between are interpolated (monotone cubic, as over
         speed), the eigenvalues solved in every cell. Attribute ``interpolation_error`` [1/s]: the
         largest change of the growth rate at solved values that are left out, every second one: an
         upper bound, as the true spacing is half of that; NaN with fewer than five.
-
-    Raises
-    ------
-    InputError
-        A name or a value is wrong, or the axes are alike.
+    Raises InputError: A name or a value is wrong, or the axes are alike.
     """
     axes = [parameter(machine, name, key) for key, name in (("x", x), ("y", y))]
     if axes[0] == axes[1]:
@@ -167,17 +149,10 @@ def solve_variants(
 ) -> list[MachineResult]:
     """Films and supports of variants at some speeds; a film that several share is solved once.
 
-    Parameters
-    ----------
-    variants : sequence of Variant
-    model : str
-        Thermal model.
-    speeds : sequence of float
-        [rad/s]
-    places : sequence of float
-        Where the rotor needs nodes besides those of the file [m].
-    workers, progress
-        As for `rotorsim.tabulate`.
+    model : Thermal model.
+    speeds : [rad/s]
+    places : Where the rotor needs nodes besides those of the file [m].
+    workers, progress : As for `rotorsim.tabulate`.
     """
     rotors = _Rotors(places)
     analyses = [
@@ -228,14 +203,7 @@ class _SolvedVariant:
 class _Job:
     """A map's axes, and how its films are solved.
 
-    Attributes
-    ----------
-    base : Variant
-    axes, nodes : list
-        Parameters, and their values as given.
-    held : mapping of Parameter to float
-    cells, workers : int
-    progress : callable or None
+    axes, nodes : Parameters, and their values as given.
     """
 
     base: Variant
@@ -373,10 +341,7 @@ _Grid = list[tuple[tuple[str, ...], int, Array] | None]
 class _Films:
     """Films at the nodes of a map, and their matrices between.
 
-    Attributes
-    ----------
-    results : sequence of MachineResult
-        Over the nodes along x, then y.
+    results : Over the nodes along x, then y.
     shape : (int, int)
     speeds : (n,) array
     """

@@ -167,7 +167,7 @@ def heating_lines(results: dict[str, MachineResult]) -> list[str]:
 
 
 def failure_lines(results: dict[str, MachineResult]) -> list[str]:
-    """What did not converge, a sentence each."""
+    """Return what did not converge, a sentence each."""
     lines = []
     for model, result in results.items():
         lines += [

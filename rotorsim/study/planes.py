@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 
 
 Array = NDArray[np.float64]
-
 _FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
 """What the film must be solved again for."""
 _DIMENSIONS = ("speed", "mass", *_FILM_DIMENSIONS)
@@ -287,10 +286,8 @@ def _spread(values: Array, cells: int) -> Array:
 
 _UNITS = {"applied_load": "N", "supply_temperature": "K"}
 """Dimensions that a table gets beside its own, and their units."""
-
 COARSE = MeshSize(circumferential=48, axial=12, cross_film=8, bush_radial=8)
 """Mesh for many solutions in a short time: critical masses within some per cent."""
-
 _VISCOSITY_LIMITS = (1e-7, 1e5)
 
 

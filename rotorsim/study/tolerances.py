@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from ..model.tolerances import ToleranceSettings
 
 Array = NDArray[np.float64]
-
 _INPUTS = {
     "radial_clearance": "radial_clearance",
     "viscosity": "viscosity",
@@ -42,12 +41,9 @@ _INPUTS = {
     "supply_temperature": "supply_temperature",
 }
 """Names in a scenario's ``[tolerances]``, and of the change that each makes to a case."""
-
 _SPEEDS = 6
 _REFINEMENTS = 2
 _BATCH = 4
-
-
 _State = TypeVar("_State")
 
 
@@ -150,16 +146,9 @@ def _search(
 class MachineThreshold:
     """From sampled parameters of a machine to its thresholds, by solving its films.
 
-    Parameters
-    ----------
-    machine : MachineFile
-    parameters : mapping of str to Parameter
-        By the names that samples use.
-    thermal_model : str
-    operating_speed : float
-        [rad/s]
-    speeds : tuple of float
-        Between which the threshold is looked for, ascending [rad/s].
+    parameters : By the names that samples use.
+    operating_speed : [rad/s]
+    speeds : Between which the threshold is looked for, ascending [rad/s].
     """
 
     machine: MachineFile
@@ -171,10 +160,7 @@ class MachineThreshold:
     def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
         """Thresholds of one sample: as `FilmThreshold`, without a critical mass.
 
-        Raises
-        ------
-        SampleError
-            A film or the static equilibrium did not converge.
+        Raises SampleError: A film or the static equilibrium did not converge.
         """
         variant = Variant(self.machine)
         for name, value in sample.items():
@@ -345,21 +331,12 @@ def study_machine_tolerances(
 ) -> ToleranceStudy:
     """Sample the tolerances of a machine's parameters, solve its films for every sample.
 
-    Parameters
-    ----------
-    machine : MachineFile
-    settings : MachineTolerances, optional
-        The file's ``[tolerances]`` by default.
-    operating_speed : float, optional
-        [rad/s]; by default that of the settings, the highest continuous one, or the highest.
-    thermal_model, mesh, executor, workers, progress
-        As for `study_tolerances`.
-
-    Raises
-    ------
-    InputError
-        No tolerances, a parameter without a value to spread about, or a spread that reaches below
-        zero.
+    settings : The file's ``[tolerances]`` by default.
+    operating_speed : [rad/s]; by default that of the settings, the highest continuous one, or the
+        highest.
+    thermal_model, mesh, executor, workers, progress : As for `study_tolerances`.
+    Raises InputError: No tolerances, a parameter without a value to spread about, or a spread that
+        reaches below zero.
     """
     settings = settings or machine.tolerances
     if settings is None:
@@ -476,9 +453,7 @@ def _search_speeds(speeds: Array, operating_speed: float) -> tuple[float, ...]:
 
 
 def _mapper(
-    executor: Executor | None,
-    workers: int | None,
-    progress: Callable[[int, int], None] | None,
+    executor: Executor | None, workers: int | None, progress: Callable[[int, int], None] | None
 ) -> Callable:
     """``map`` on the executor, or on this machine's processes, a few samples at a time."""
     from .sweep import available_cores, map_on_processes

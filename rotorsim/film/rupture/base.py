@@ -27,25 +27,15 @@ class Factor(Protocol):
 class PressureSolution:
     """Pressure and where the film is full.
 
-    Attributes
-    ----------
-    pressure : (n, m) array
-        Gauge [Pa]; groove cells carry the supply pressure.
-    raw : (n, m) array
-        Before negative pressures are dropped (``half_sommerfeld``); else the same.
-    full : (n, m) bool array
-        Cells whose continuity the pressure solves.
-    factor : Factor
-        Of the matrix on those cells, for further right-hand sides.
-    steps : int
-        Linear solves.
-    converged : bool
-    liquid : (n, m) array or None
-        Liquid fraction, where the condition conserves mass.
-    violations : int
-        Cells that break the rupture condition because their state was given.
-    inlet : (g,) array or None
-        Liquid fraction on the leading edge behind each opening, where the supply is limited.
+    pressure : (n, m) array. Gauge [Pa]; groove cells carry the supply pressure.
+    raw : (n, m) array. Before negative pressures are dropped (``half_sommerfeld``); else the same.
+    full : (n, m) bool array. Cells whose continuity the pressure solves.
+    factor : Of the matrix on those cells, for further right-hand sides.
+    steps : Linear solves.
+    liquid : (n, m) array or None. Liquid fraction, where the condition conserves mass.
+    violations : Cells that break the rupture condition because their state was given.
+    inlet : (g,) array or None. Liquid fraction on the leading edge behind each opening, where the
+        supply is limited.
     """
 
     pressure: Array
@@ -109,19 +99,11 @@ class RuptureCondition(Protocol):
     ) -> tuple[Factor, NDArray[Any] | None]:
         """Return the factor of the film that moves as exp(s t).
 
-        Parameters
-        ----------
-        factor : Factor
-            Of the film at rest.
-        rate : (n, m) complex array
-            s times the volume of each cell [m3/s]; ruptured cells whose content may change store
-            as much for each unit of liquid fraction.
-
-        Returns
-        -------
-        Factor
-        (n, m) complex array or None
-            By which the right-hand sides are to be multiplied; None: by one.
+        factor : Of the film at rest.
+        rate : (n, m) complex array. s times the volume of each cell [m3/s]; ruptured cells whose
+            content may change store as much for each unit of liquid fraction.
+        Returns (n, m) complex array or None: By which the right-hand sides are to be multiplied;
+            None: by one.
         """
         ...
 

@@ -107,10 +107,7 @@ def bearing_drawing(
     Diameters are to scale among each other; the film is magnified by the factor that the picture
     names. Pressure is the shaded line outside the bore.
 
-    Raises
-    ------
-    InputError
-        The point was solved without its fields.
+    Raises InputError: The point was solved without its fields.
     """
     film, radius = _fields(point), journal_radius
     ax = axes_or_new(ax, (5.2, 4.6))

@@ -37,7 +37,6 @@ from .style import (
 )
 
 Array = NDArray[np.float64]
-
 _WHIRLS = {
     "forward": {"color": "#0072B2", "linestyle": "-"},
     "backward": {"color": "#D55E00", "linestyle": (0, (5, 2))},

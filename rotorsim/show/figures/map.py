@@ -39,8 +39,6 @@ _REGIONS = (
     _Region("unstable", "#8c4a5f", "", "none"),
     _Region("unstable if heating is neglected, stable with it", "#7fc4a4", "\\\\\\\\", "#1d4d38"),
 )
-
-
 _MARKS = ("*", "D", "s", "^")
 
 

@@ -252,10 +252,7 @@ def _number_branch(
         )  # fmt: skip
 
 
-_NAMES = {
-    "radial_clearance": "clearance",
-    "supply_temperature": "supply temperature",
-}
+_NAMES = {"radial_clearance": "clearance", "supply_temperature": "supply temperature"}
 
 
 def tolerance_histograms(study: ToleranceStudy, title: str = "") -> Figure:

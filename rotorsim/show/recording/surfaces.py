@@ -14,7 +14,6 @@ from ...study.orbits import FilmFrame
 
 Array = NDArray[np.float64]
 MILLI = 1e3
-
 _AROUND, _ALONG = 96, 16
 """Display grid: cells around and along the bearing (the films' own grids may differ)."""
 DRAWN_CLEARANCE = 0.22
@@ -28,10 +27,8 @@ _UNWRAPPED_STRETCH = 1.8
 def display_grid(film: FilmFrame) -> tuple[Array, Array]:
     """Grid on which a film is shown, closed around the turn and at both ends.
 
-    Returns
-    -------
-    (AROUND + 1,), (ALONG + 1,) arrays
-        Angles -pi to pi, the load line in the middle [rad]; places -L/2 to L/2 [mm].
+    Returns (AROUND + 1,), (ALONG + 1,) arrays: Angles -pi to pi, the load line in the middle [rad];
+        places -L/2 to L/2 [mm].
     """
     half = 0.5 * film.length * MILLI
     return np.linspace(-np.pi, np.pi, _AROUND + 1), np.linspace(-half, half, _ALONG + 1)
@@ -40,17 +37,10 @@ def display_grid(film: FilmFrame) -> tuple[Array, Array]:
 def on_display_grid(film: FilmFrame, values: Array, at_ends: float | None) -> Array:
     """Interpolate a film field (n, m) to the display grid.
 
-    Parameters
-    ----------
-    film : FilmFrame
     values : (n, m) array
-    at_ends : float or None
-        Known value at both ends of the bearing (ambient pressure: 0); None holds the last cell's.
-
-    Returns
-    -------
-    (AROUND + 1, ALONG + 1) array
-        First and last row are the same place.
+    at_ends : Known value at both ends of the bearing (ambient pressure: 0); None holds the last
+        cell's.
+    Returns (AROUND + 1, ALONG + 1) array: First and last row are the same place.
     """
     angle, place = display_grid(film)
     turned = np.mod(film.theta + np.pi, 2.0 * np.pi) - np.pi
@@ -115,17 +105,14 @@ def pad_outlines(film: FilmFrame) -> list[Array]:
 
 
 def exaggeration(film: FilmFrame) -> float:
-    """How many times larger than true the clearance is drawn."""
+    """Return how many times larger than true the clearance is drawn."""
     return DRAWN_CLEARANCE * film.journal_radius / film.radial_clearance
 
 
 def wrapped(film: FilmFrame, height: Array) -> Array:
     """Film round the bore: vertices (AROUND + 1)*(ALONG + 1) x 3.
 
-    Parameters
-    ----------
-    height : (AROUND + 1, ALONG + 1) array
-        Radial displacement in journal radii.
+    height : (AROUND + 1, ALONG + 1) array. Radial displacement in journal radii.
     """
     angle, place = display_grid(film)
     radius = face_radius(film, angle)[:, None] + height * film.journal_radius * MILLI
