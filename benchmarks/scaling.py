@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from rotorsim.film.banded import factor_operator
-from rotorsim.film.bush import bush_operator
+from rotorsim.film.bush import _bush_operator
 from rotorsim.film.energy import WallTemperatures, march
 from rotorsim.film.heat import energy_problem
 from rotorsim.film.solution import FilmSolution, solve_film
@@ -86,7 +86,7 @@ def parts(solution: FilmSolution, repeats: int) -> dict[str, tuple[float, float]
         return march(energy, thermal.viscosity, walls, thermal.inlet_temperature, field,
                      leaving=thermal.leaving_temperature)  # fmt: skip
 
-    bush = bush_operator(
+    bush = _bush_operator(
         problem.mesh.theta_faces, problem.mesh.y_faces, (0.05, 0.075), k, 250.0,
         outer_transfer=80.0, end_transfer=(0.0, 80.0),
     )  # fmt: skip

@@ -131,7 +131,7 @@ class BushOperator:
         return self.around @ modes @ self.along.T
 
 
-def bush_operator(
+def _bush_operator(
     theta_faces: Array,
     y_faces: Array,
     radii: tuple[float, float],
@@ -267,8 +267,8 @@ def kept_operator(
     end_transfer: tuple[float, float],
     edge_transfer: float | None = None,
 ) -> BushOperator:
-    """Return `bush_operator` of hashable arguments, one of the last few if it is the same."""
-    return bush_operator(
+    """Return `_bush_operator` of hashable arguments, one of the last few if it is the same."""
+    return _bush_operator(
         np.frombuffer(theta_faces),
         np.frombuffer(y_faces),
         radii,

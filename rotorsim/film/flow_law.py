@@ -128,13 +128,13 @@ def flow_law(case: Case) -> FlowLaw:
     oil = case.lubricant
     return TurbulentFlow(
         oil.density,
-        transition_limits(case),
+        _transition_limits(case),
         oil.specific_heat / (oil.thermal_conductivity * TURBULENT_PRANDTL),
         _BULK[case.film.flow],
     )
 
 
-def transition_limits(case: Case) -> tuple[float, float]:
+def _transition_limits(case: Case) -> tuple[float, float]:
     """Local Reynolds numbers at which the transition begins and ends.
 
     With Taylor's criterion from 41.2 sqrt(R/c), where vortices begin, to twice that.
@@ -154,5 +154,4 @@ __all__ = [
     "LaminarFlow",
     "TurbulentFlow",
     "flow_law",
-    "transition_limits",
 ]

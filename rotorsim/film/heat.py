@@ -122,7 +122,7 @@ def _march_order(problem: FilmProblem, flow: FilmFlow) -> NDArray[np.int64]:
     return (first + np.arange(n)) % n
 
 
-def layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
+def _layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
     """Return every layer's flux [m3/s] through one face of the chosen cells, (cells, k)."""
     flow, layers = energy.flow, energy.layers
     i, j = np.nonzero(cells)
@@ -177,7 +177,7 @@ def _leaving_temperature(energy: EnergyProblem, temperature: Array) -> float:
     flow = heat = 0.0
     for face, outward in ((EAST, 1.0), (SOUTH, -1.0), (NORTH, 1.0)):
         open_ = _exits(energy) if face == EAST else ~energy.interior[face] & ~energy.fixed
-        out = np.maximum(outward * layer_fluxes(energy, face, open_), 0.0)
+        out = np.maximum(outward * _layer_fluxes(energy, face, open_), 0.0)
         flow += float(out.sum())
         heat += float(np.sum(out * temperature[open_]))
     return heat / flow if flow > 0.0 else 0.0
@@ -199,7 +199,7 @@ def _mixed(
         number = groove_source[face][open_]
         if not number.size:
             continue
-        into = layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
+        into = _layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
         leaving = np.maximum(-into, 0.0).sum(axis=1)
         arriving = np.maximum(into, 0.0) * energy.flow.fresh_fraction[open_][:, None]
         brought = np.sum(arriving * temperature[open_], axis=1)
@@ -276,7 +276,7 @@ def _side_flow(energy: EnergyProblem, temperature: Array) -> tuple[float, float]
     total = heat = 0.0
     for face, outward in ((SOUTH, -1.0), (NORTH, 1.0)):
         open_ = ~energy.interior[face] & ~energy.fixed
-        flux = np.maximum(outward * layer_fluxes(energy, face, open_), 0.0)
+        flux = np.maximum(outward * _layer_fluxes(energy, face, open_), 0.0)
         total, heat = total + float(flux.sum()), heat + float(np.sum(flux * temperature[open_]))
     return total, heat
 
@@ -291,7 +291,7 @@ def _in_layers(
     number = groove_source[WEST]
     open_ = (number >= 0) & ((hot + fresh) > 0.0)[np.maximum(number, 0)]
     at = number[open_]
-    flux = np.maximum(layer_fluxes(energy, WEST, open_), 0.0)
+    flux = np.maximum(_layer_fluxes(energy, WEST, open_), 0.0)
     # Flow nearer to the journal than each layer's two faces.
     above = np.cumsum(flux[:, ::-1], axis=1)[:, ::-1]
     nearest = (hot[at] / (hot + fresh)[at] * flux.sum(axis=1))[:, None]
@@ -306,7 +306,7 @@ def _in_layers(
 def entering_temperature(energy: EnergyProblem, inlet: Array, columns: Flags) -> float:
     """Mean temperature [K] of the oil that enters the first faces of `columns` (n,)."""
     open_ = energy.flow.inlet & columns[:, None]
-    flux = np.maximum(layer_fluxes(energy, WEST, open_), 0.0)
+    flux = np.maximum(_layer_fluxes(energy, WEST, open_), 0.0)
     entering = inlet[WEST][open_].reshape(int(open_.sum()), -1)
     total = float(flux.sum())
     return float(np.sum(flux * entering)) / total if total > 0.0 else math.nan
@@ -423,7 +423,7 @@ def _enthalpy_out(
         if face == WEST:
             part = energy.carry_over[open_][:, None]
             entering = part * before[open_] + (1.0 - part) * entering
-        flux = outward * layer_fluxes(energy, face, open_)
+        flux = outward * _layer_fluxes(energy, face, open_)
         total += float(
             np.sum(np.maximum(flux, 0.0) * out[open_]) + np.sum(np.minimum(flux, 0.0) * entering)
         )

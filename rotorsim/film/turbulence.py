@@ -166,7 +166,7 @@ def _stress(table, viscosity, logarithms, h, density, speed, guess):
 
 
 @kernel
-def turbulent_weight(reynolds, lower, upper):
+def _turbulent_weight(reynolds, lower, upper):
     """Weight of the turbulent fluidity, 0 to 1, and its rate d/d ln(Re)."""
     if upper <= 0.0:
         return 1.0, 0.0
@@ -244,7 +244,7 @@ def integrate(
         for j in range(m):
             h, laminar = thickness[i, j], laminar_f0[i, j]
             reynolds = density * speed * h * laminar if h > 0.0 else 0.0
-            w, w_rate = turbulent_weight(reynolds, lower, upper)
+            w, w_rate = _turbulent_weight(reynolds, lower, upper)
             if not h > 0.0:
                 w = 0.0
             weight[i, j] = w

@@ -100,7 +100,7 @@ class MachineSpectrum:
         if self.complete:
             found = _every_mode(*self.machine.matrices(speed))
         else:
-            found = lowest_eigenmodes(self.machine, self.count, speed)
+            found = _lowest_eigenmodes(self.machine, self.count, speed)
         if found is None or not self.machine.frequency_dependent:
             return found
         return _at_their_frequencies(self.machine, speed, found)
@@ -147,7 +147,7 @@ def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:
     return Eigenmodes(values.astype(complex), accuracy, _of_unit_length(shapes))
 
 
-def lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes | None:
+def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes | None:
     """Lowest modes of a machine: 2 `count` or a few more, ascending in modulus; None: not known.
 
     machine : Unknowns without mass or damping are allowed.

@@ -78,7 +78,7 @@ def simulate(
     pieces: deque[Orbit] = deque()
     dropped: OrbitEvent | None = None
     least = math.inf
-    for piece in simulate_pieces(problem):
+    for piece in _simulate_pieces(problem):
         if consume is not None:
             consume(piece)
         pieces.append(piece)
@@ -115,7 +115,7 @@ def _turns(pieces: Iterable[Orbit]) -> float:
     return sum(p.t.size / p.samples_per_revolution for p in pieces)
 
 
-def simulate_pieces(
+def _simulate_pieces(
     problem: OrbitProblem, revolutions: int = _CHUNK_REVOLUTIONS
 ) -> Iterator[Orbit]:
     """Integrate piece by piece, so that a long run can be streamed, thinned or written out.

@@ -40,7 +40,7 @@ _STYLE = """
 """
 
 
-def point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
+def _point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
     """Solve the scenario of `text`; return numbers, verdict and pictures, or what is wrong.
 
     Returns: ``rows`` (label, text, unit, SI value), ``verdicts``, ``notes``, ``pictures`` (SVG); or
@@ -84,7 +84,7 @@ def point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
             "notes": [*notes, *point.warnings]}  # fmt: skip
 
 
-def map_outcome(text: str, units: str, fine: bool, speeds: list[float]) -> dict[str, Any]:
+def _map_outcome(text: str, units: str, fine: bool, speeds: list[float]) -> dict[str, Any]:
     """Solve over speed; return the threshold speeds in words and the stability map as SVG."""
     from ..study.main_job import map_of
     from .figures.map import stability_map
@@ -161,7 +161,7 @@ def _report(text: str, units: str, folder: str) -> str:
 
 def _ready(text: str) -> None:
     """Load and compile what the first request needs."""
-    point_outcome(text, "si", False)
+    _point_outcome(text, "si", False)
 
 
 class _Page:
@@ -275,11 +275,11 @@ class _Page:
         """Solve the point coarsely while values change, and in full when they rest."""
         while True:
             self.moved.clear()
-            version, self.point = await self.asked(point_outcome, False)
+            version, self.point = await self.asked(_point_outcome, False)
             self.show("coarse mesh")
             if not await self.rested(version):
                 continue
-            fine = asyncio.create_task(self.asked(point_outcome, True))
+            fine = asyncio.create_task(self.asked(_point_outcome, True))
             moved = asyncio.create_task(self.moved.wait())
             await asyncio.wait({fine, moved}, return_when=asyncio.FIRST_COMPLETED)
             if fine.done():
@@ -296,11 +296,11 @@ class _Page:
             if seen == self.version:
                 await asyncio.sleep(0.05)
                 continue
-            seen, self.chart = await self.asked(map_outcome, False, self.speeds)
+            seen, self.chart = await self.asked(_map_outcome, False, self.speeds)
             self.show_map()
             if not await self.rested(seen):
                 continue
-            version, chart = await self.asked(map_outcome, True, self.speeds)
+            version, chart = await self.asked(_map_outcome, True, self.speeds)
             if version == self.version:
                 self.chart = chart
                 self.show_map()

@@ -94,11 +94,6 @@ def map_of_machine(
     return job.plane(datasets)
 
 
-def maps_of_file(machine: MachineFile, **options: object) -> list[Plane]:
-    """The maps that a machine's file asks for; options are those of `map_of_machine`."""
-    return [map_of_entry(machine, entry, **options) for entry in machine.map]
-
-
 def map_of_entry(machine: MachineFile, entry: MapEntry, **options: object) -> Plane:
     """One ``[[map]]`` of a machine's file."""
     values = {"x": entry.x_values, "y": entry.y_values}
@@ -139,7 +134,7 @@ def _no_sweep(_cases: list[Case], _speeds: list[float]) -> list[OperatingPoint]:
     raise AssertionError
 
 
-def solve_variants(
+def _solve_variants(
     variants: Sequence[Variant],
     model: str,
     speeds: Sequence[float],
@@ -254,7 +249,7 @@ class _Job:
         xs, ys = self.film_nodes
         places = [at for one in self.axes for at in one.places]
         places += list(self.base.cross_stiffness)
-        results = solve_variants(
+        results = _solve_variants(
             [self.variant(x, y) for x in xs for y in ys], model, speeds, places, self.workers,
             self.progress,
         )  # fmt: skip

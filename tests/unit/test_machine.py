@@ -10,7 +10,7 @@ from rotorsim.machine.branches import Verdict
 from rotorsim.machine.control import state_space
 from rotorsim.machine.machine import Machine, Mount
 from rotorsim.machine.modes import modes
-from rotorsim.machine.spectrum import MachineSpectrum, all_eigenmodes, lowest_eigenmodes
+from rotorsim.machine.spectrum import MachineSpectrum, _lowest_eigenmodes, all_eigenmodes
 from rotorsim.machine.support import (
     ConstantSupport,
     MatrixTable,
@@ -215,7 +215,7 @@ def test_lowest_modes_of_a_large_machine_are_among_all_its_modes(support, speed)
     machine = large_machine(support)
     assert not MachineSpectrum(machine, 12).complete
     every = all_eigenmodes(machine.state_matrix(speed), machine.size)
-    found = lowest_eigenmodes(machine, 12, speed)
+    found = _lowest_eigenmodes(machine, 12, speed)
     assert found.values.size >= 24
     order = np.argsort(np.abs(every.values))[: found.values.size]
     for value, bound in zip(every.values[order], every.accuracy[order], strict=True):

@@ -25,7 +25,7 @@ from rotorsim.orbit import (
 )
 from rotorsim.orbit.analysis import _fit_modes, growth_rate, recognise
 from rotorsim.orbit.clearance import contact_boundary, minimum_film
-from rotorsim.orbit.integrate import simulate_pieces
+from rotorsim.orbit.integrate import _simulate_pieces
 from rotorsim.orbit.orbit import OrbitStatus, concatenate
 from rotorsim.orbit.problem import Controller, Method
 from rotorsim.orbit.spectrum import whirl_frequency_ratio
@@ -89,7 +89,7 @@ def test_samples_are_equally_spaced_in_shaft_angle():
 
 def test_pieces_join_to_the_same_orbit_and_say_that_they_go_on():
     p = problem(initial_displacement=(1e-5, 0.0))
-    pieces = list(simulate_pieces(p, revolutions=7))
+    pieces = list(_simulate_pieces(p, revolutions=7))
     assert [piece.status for piece in pieces] == [OrbitStatus.RUNNING] * 2 + [OrbitStatus.COMPLETED]
     joined, whole = concatenate(pieces), simulate(p)
     assert joined.t.size == whole.t.size == 20 * 64 + 1

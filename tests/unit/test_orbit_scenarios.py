@@ -19,7 +19,7 @@ from rotorsim.orbit import SpeedSchedule, analyse, orbit_ellipse
 from rotorsim.orbit.description import describe_orbit
 from rotorsim.orbit.film_force import SolvedFilmForce, can_be_mapped
 from rotorsim.orbit.force_map import FilmMapForce
-from rotorsim.orbit.integrate import simulate_pieces
+from rotorsim.orbit.integrate import _simulate_pieces
 from rotorsim.orbit.orbit import OrbitStatus, concatenate
 from rotorsim.rotor import Rotor
 from rotorsim.study.orbits import _orbit_problem, simulate_orbit
@@ -242,7 +242,7 @@ def test_shipped_orbits_say_what_is_seen_and_run(path):
     assert one.orbit.kind == said["orbit"]["kind"]
     for model in one.thermal_models:
         problem = _orbit_problem(one, thermal_model=model.value)
-        pieces = simulate_pieces(problem, 1)
+        pieces = _simulate_pieces(problem, 1)
         begin = concatenate([next(pieces)])
         assert begin.status is OrbitStatus.RUNNING
         assert begin.t.size == problem.samples_per_revolution

@@ -18,7 +18,7 @@ from rotorsim.film.heat import HeatBalance
 from rotorsim.machine.map import stability_map
 from rotorsim.orbit import Orbit
 from rotorsim.show.report import html, report_page, write_report
-from rotorsim.show.report.results import log_decrement
+from rotorsim.show.report.results import _log_decrement
 from rotorsim.status import SolveStatus
 from rotorsim.study.main_job import Results
 from rotorsim.study.stability import stability_curves
@@ -133,9 +133,9 @@ def test_log_decrement_is_that_of_successive_swings(results):
     slowest = curve.eigenvalues[-1, 0]
     period = 2.0 * np.pi / abs(slowest.imag)
     ratio = abs(np.exp(slowest * 0.3)) / abs(np.exp(slowest * (0.3 + period)))
-    assert log_decrement(curve) == pytest.approx(np.log(ratio))
+    assert _log_decrement(curve) == pytest.approx(np.log(ratio))
     still = replace(curve, eigenvalues=np.full((3, 4), -5.0 + 0.0j))
-    assert log_decrement(still) is None
+    assert _log_decrement(still) is None
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from scipy.special import iv, ivp, kv, kvp
 from tolerances import ORDER
 
-from rotorsim.film.bush import bush_operator
+from rotorsim.film.bush import _bush_operator
 
 RADII, LENGTH = (0.05, 0.075), 0.08
 
@@ -53,7 +53,7 @@ def solve(
     theta = 0.5 * (theta_faces[1:] + theta_faces[:-1])
     y = 0.5 * (y_faces[1:] + y_faces[:-1])
     pattern = np.cos(around * theta)[:, None] * np.cos(wave * y)
-    operator = bush_operator(
+    operator = _bush_operator(
         theta_faces, y_faces, RADII, layers, conductivity,
         outer_transfer=transfer, end_transfer=(0.0, transfer),
         edge_transfer=None if edge is None else transfer,
@@ -90,7 +90,7 @@ def test_pad_is_second_order(transfer, conductivity):
 def test_surroundings_take_what_the_film_gives():
     """A uniform flux, ends insulated: T = q r1 [ln(r2/r)/k + 1/(h r2)], the textbook's cylinder."""
     conductivity, transfer, flux = 40.0, 80.0, 1000.0
-    operator = bush_operator(
+    operator = _bush_operator(
         _uneven(24), np.linspace(0.0, 0.04, 5), RADII, 64, conductivity,
         outer_transfer=transfer, end_transfer=(0.0, 0.0),
     )  # fmt: skip
@@ -103,7 +103,7 @@ def test_surroundings_take_what_the_film_gives():
 def test_robin_exchange_is_the_flux_it_implies():
     """The bore found from a reference temperature and a conductance answers its own flux."""
     rng = np.random.default_rng(3)
-    operator = bush_operator(
+    operator = _bush_operator(
         _uneven(24), np.linspace(-0.04, 0.04, 9), RADII, 6, 250.0,
         outer_transfer=80.0, end_transfer=(80.0, 80.0),
     )  # fmt: skip

@@ -11,7 +11,7 @@ from film_cases import DAL_OIL, elliptical_arcs, split_grooves, thermal_case
 
 from rotorsim.bearing.solve import solve_case
 from rotorsim.errors import InputError
-from rotorsim.film.bush import bush_operator
+from rotorsim.film.bush import _bush_operator
 from rotorsim.film.growth import clearances, hot_clearances, with_clearances
 from rotorsim.model import Bearing, LoadTarget, Pad
 from rotorsim.model.expansion import BushFit, Expansion, HousingFit
@@ -75,7 +75,7 @@ def test_pad_opens_like_a_strip_and_grows_like_its_thickness():
 def test_mean_and_gradient_of_a_bush_are_those_of_its_field():
     faces = np.linspace(0.0, 2.0 * math.pi, 25)
     y = np.linspace(0.0, 0.04, 7)
-    operator = bush_operator(
+    operator = _bush_operator(
         faces, y, (INNER, OUTER), 9, 50.0, outer_transfer=200.0, end_transfer=(0.0, 90.0)
     )
     random = np.random.default_rng(1)

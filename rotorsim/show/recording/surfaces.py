@@ -70,7 +70,7 @@ def bore_radius(journal_radius: float) -> float:
     return journal_radius * MILLI * (1.0 + DRAWN_CLEARANCE)
 
 
-def face_radius(film: FilmFrame, angle: Array) -> Array:
+def _face_radius(film: FilmFrame, angle: Array) -> Array:
     """Radius [mm], as drawn, of the wall around the film at `angle` [rad].
 
     Of the bore; between pads of their faces as they stand, joined over the openings.
@@ -115,7 +115,7 @@ def wrapped(film: FilmFrame, height: Array) -> Array:
     height : (AROUND + 1, ALONG + 1) array. Radial displacement in journal radii.
     """
     angle, place = display_grid(film)
-    radius = face_radius(film, angle)[:, None] + height * film.journal_radius * MILLI
+    radius = _face_radius(film, angle)[:, None] + height * film.journal_radius * MILLI
     x = radius * np.cos(angle)[:, None]
     y = radius * np.sin(angle)[:, None]
     z = np.broadcast_to(place, x.shape)

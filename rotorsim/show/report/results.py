@@ -109,7 +109,7 @@ def _margin_row(curve: StabilityCurve) -> list[str]:
         curve.verdict or "-",
         curve.thresholds_text,
         number(float(curve.growth_rate[-1])),
-        number(log_decrement(curve)),
+        number(_log_decrement(curve)),
     ]
     if curve.mass is not None:
         part = 100.0 * (1.0 - curve.mass / critical)
@@ -126,7 +126,7 @@ def _verdict_words(curve: StabilityCurve) -> str:
     return str(curve.stability[-1]).replace("_", " ") or "-"
 
 
-def log_decrement(curve: StabilityCurve) -> float | None:
+def _log_decrement(curve: StabilityCurve) -> float | None:
     """Of the slowest mode at the highest speed, 2 pi a/omega_d; None where it does not swing."""
     if curve.eigenvalues is None:
         return None
