@@ -71,7 +71,7 @@ def solve_case(
     except InputError as error:
         raise InputError(error.message, key="speed", value=error.value or speed) from None
     try:
-        solution = _solved_film(case, speed, initial)
+        solution = solved_film(case, speed, initial)
     except NoFilmError as error:
         return failed_point(case, speed, str(error), SolveStatus.NO_EQUILIBRIUM), None
     except SingularFilmError as error:
@@ -81,7 +81,7 @@ def solve_case(
     return point, solution.warm_start if usable else None
 
 
-def _solved_film(
+def solved_film(
     case: Case, speed: float, initial: WarmStart | None = None, walls: WallsOf = choose_walls
 ) -> FilmSolution:
     """Solve from the first guess, and without it where that leads nowhere.
