@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ..model import Case, FlowRegime
 from .layers import LayerIntegrals, TurbulentIntegrals
+from .roughness import RoughFlow
 from .turbulence import TURBULENT_PRANDTL, integrate, layer_tables
 
 Array = NDArray[np.float64]
@@ -26,6 +27,10 @@ COUETTE_POWER = 1
 """d ln(flow)/d ln(h) of the Couette part at given G."""
 CRITICAL_TAYLOR = 41.2
 """Re sqrt(c/R) at which Taylor vortices set in between concentric cylinders (Taylor 1923)."""
+
+
+_NEVER = (1e300, 2e300)
+"""Transition of a film that stays laminar."""
 
 
 class FlowLaw(Protocol):
@@ -71,6 +76,8 @@ class TurbulentFlow:
     transition: tuple[float, float]
     diffusion: float
     bulk: tuple[tuple[float, float, float, float], ...] = ()
+    always: bool = False
+    """Whether to fill all shares even where the film is laminar throughout."""
     _stresses: dict[tuple[int, int, int], Array] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
@@ -83,7 +90,9 @@ class TurbulentFlow:
         lower, upper = self.transition
         reynolds = self.density * surface_speed * thickness * layers.f0
         if surface_speed <= 0.0 or (upper > 0.0 and not reynolds.max() > lower):
-            return layers
+            if not self.always:
+                return layers
+            lower, upper = _NEVER
         n, m, across = layers.viscosity.shape
         shares = layers.pressure_share.shape[2]
         stresses = self._stresses.setdefault((n, m, across), np.zeros((n, m)))
@@ -123,15 +132,19 @@ _BULK: dict[FlowRegime, tuple[tuple[float, float, float, float], ...]] = {
 
 def flow_law(case: Case) -> FlowLaw:
     """Return the law that the case's film settings name."""
-    if case.film.flow is FlowRegime.LAMINAR:
+    film, oil = case.film, case.lubricant
+    rough = film.roughness is not None and film.roughness.combined > 0.0
+    laminar = film.flow is FlowRegime.LAMINAR
+    if laminar and not rough:
         return LaminarFlow()
-    oil = case.lubricant
-    return TurbulentFlow(
+    law = TurbulentFlow(
         oil.density,
-        _transition_limits(case),
+        _NEVER if laminar else _transition_limits(case),
         oil.specific_heat / (oil.thermal_conductivity * TURBULENT_PRANDTL),
-        _BULK[case.film.flow],
+        () if laminar else _BULK[film.flow],
+        always=rough,
     )
+    return RoughFlow(law, film.roughness) if rough and film.roughness else law
 
 
 def _transition_limits(case: Case) -> tuple[float, float]:

@@ -150,7 +150,7 @@ def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
         bore = bearing.radial_clearance + bore_offset(bearing, inside)
         displacements = _translations(bearing, mesh)
     rest = np.repeat(bore[[0, 1, 2, 0, 0]][:, :, None], mesh.shape[1], axis=2)
-    if bearing.pockets:
+    if bearing.hollows:
         rest += _pocket_depth(bearing, mesh, inside[[0, 1, 2, 0, 0]][:, :, None])
     if not bearing.is_symmetric:
         slopes = np.array([-bearing.misalignment[1], bearing.misalignment[0]])
@@ -162,7 +162,7 @@ def _pocket_depth(bearing: Bearing, mesh: FilmMesh, theta: Array) -> Array:
     """Depth of the pockets [m], (5, n, m), each cell's faces seen from inside it."""
     y, inward = mesh.y, 1e-9 * np.diff(mesh.y_faces)
     along = np.stack([y, y, y, mesh.y_faces[:-1] + inward, mesh.y_faces[1:] - inward])[:, None]
-    depths = [pocket.deepening(theta, along, bearing.length) for pocket in bearing.pockets]
+    depths = [pocket.deepening(theta, along, bearing.length) for pocket in bearing.hollows]
     return np.max(np.broadcast_arrays(*depths), axis=0)
 
 

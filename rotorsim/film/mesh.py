@@ -105,7 +105,7 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
         if half
         else np.linspace(-bearing.length / 2.0, bearing.length / 2.0, size.axial + 1)
     )
-    if bearing.pockets:
+    if bearing.hollows:
         y_faces = _axial_faces(bearing, y_faces)
     supply, y_faces = _supply_cells(bearing, theta_faces, y_faces)
     slot = np.zeros(theta_faces.size - 1, dtype=bool)
@@ -124,7 +124,7 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
 def _edges(bearing: Bearing) -> list[float]:
     """Angles at which a groove or a lobe begins or ends [rad]; the grooves' first."""
     edges = [edge for groove in bearing.grooves for edge in groove_edges(groove)]
-    edges += [e for p in bearing.pockets if not p.is_ring for e in (p.start, p.end)]
+    edges += [e for p in bearing.hollows if not p.is_ring for e in (p.start, p.end)]
     return edges + [e for arc in bearing.arcs if arc.preload > 0.0 for e in (arc.start, arc.end)]
 
 
@@ -258,7 +258,7 @@ def _groove_at(bearing: Bearing, theta: float) -> int | None:
 def _axial_faces(bearing: Bearing, y_faces: Array) -> Array:
     """As many axial faces, with one on every edge of a pocket or a groove."""
     first, last = float(y_faces[0]), float(y_faces[-1])
-    edges = [edge for pocket in bearing.pockets for edge in pocket.reach(bearing.length)]
+    edges = [edge for pocket in bearing.hollows for edge in pocket.reach(bearing.length)]
     edges += [s * g.length / 2.0 for g in bearing.grooves if g.length for s in (1.0, -1.0)]
     room = 1e-6 * bearing.length
     breaks = [first]

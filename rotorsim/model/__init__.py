@@ -4,7 +4,7 @@ SI units throughout (Pa, m, s, kg, K, rad). Angles in the load frame: from the s
 positive in the direction of rotation.
 """
 
-from .bearing import Arc, Bearing, Feed, Groove, Pocket
+from .bearing import Arc, Bearing, Feed, Groove, Pocket, Texture
 from .case import Case
 from .lubricant import ExponentialViscosity, Lubricant, ViscosityLaw, WaltherViscosity
 from .operating import EccentricityTarget, LoadTarget, Target
@@ -27,8 +27,10 @@ from .settings import (
     Inception,
     InletModel,
     MeshSize,
+    RoughnessPattern,
     RupturedFriction,
     ShaftModel,
+    SurfaceRoughness,
     ThermalModel,
     ThermalSettings,
     ViscosityResponse,
@@ -57,12 +59,15 @@ __all__ = [
     "Pivot",
     "Pocket",
     "RigidPivot",
+    "RoughnessPattern",
     "RupturedFriction",
     "ShaftModel",
     "SocketPivot",
     "SpherePivot",
     "SpringPivot",
+    "SurfaceRoughness",
     "Target",
+    "Texture",
     "ThermalModel",
     "ThermalSettings",
     "ViscosityLaw",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Annotated
@@ -166,6 +167,53 @@ class Pocket:
 
 
 @dataclass(frozen=True)
+class Texture:
+    """Equal dimples in rows over a part of the bore, each a pocket that the mesh resolves.
+
+    start, end : Angles from the load line [rad].
+    depth : Of each dimple [m].
+    around, along : Dimples around and along the axis.
+    area_share : Part of the textured area that the dimples take, 0 to 1.
+    length : Axial length of the textured part [m], centred; None: the bearing's.
+    """
+
+    start: Annotated[Angle, Example("10 deg")]
+    end: Angle
+    depth: Annotated[float, Quantity("length", "10 um")]
+    around: Annotated[int, Number(least=1, most=200)]
+    along: Annotated[int, Number(least=1, most=100)]
+    area_share: Annotated[float, Number(above=0.0, below=1.0)] = 0.25
+    length: Length | None = None
+
+    def __post_init__(self) -> None:
+        check(self, "texture")
+        _require(
+            1e-6 < self.end - self.start <= FULL_TURN + 1e-9,
+            "a texture must end after it starts and span at most 360 deg",
+            "texture.end",
+            self.end,
+        )
+
+    def dimples(self, bearing_length: float) -> Iterator[Pocket]:
+        """Every dimple, in the middle of its own share of the area."""
+        length = bearing_length if self.length is None else self.length
+        pitch, row, part = (
+            (self.end - self.start) / self.around,
+            length / self.along,
+            self.area_share,
+        )
+        for i in range(self.around):
+            middle = self.start + (i + 0.5) * pitch
+            half = 0.5 * math.sqrt(part) * pitch
+            for j in range(self.along):
+                at = (j + 0.5) * row - 0.5 * length
+                yield Pocket(
+                    middle - half, middle + half, self.depth, length=math.sqrt(part) * row,
+                    at=at if abs(at) > 1e-9 * length else 0.0,
+                )  # fmt: skip
+
+
+@dataclass(frozen=True)
 class Arc:
     """One lobe of a multi-lobe bore.
 
@@ -251,6 +299,7 @@ class Bearing:
     feed: Annotated[Feed, NOT_IN_FILES] = Feed.FLOODED
     supply_flow: Annotated[float | None, NOT_IN_FILES] = None
     pockets: Annotated[tuple[Pocket, ...], Key("pocket")] = ()
+    textures: Annotated[tuple[Texture, ...], Key("texture")] = ()
     profile: BearingProfile | None = field(default=None, compare=False)
     preload: Preload | None = field(default=None, compare=False)
     offset: Offset | None = field(default=None, compare=False)
@@ -287,7 +336,7 @@ class Bearing:
                 pocket.at,
             )
         _require(
-            not (self.pockets and self.pads), "pockets are cut into a bore, not into tilting pads",
+            not (self.hollows and self.pads), "pockets are cut into a bore, not into tilting pads",
             "bearing.pocket", len(self.pockets),
         )  # fmt: skip
         object.__setattr__(self, "arcs", self._profiled())
@@ -355,9 +404,15 @@ class Bearing:
         return groove.length is None or groove.length >= self.length * (1.0 - 1e-9)
 
     @property
+    def hollows(self) -> tuple[Pocket, ...]:
+        """Pockets and the dimples of all textures."""
+        dimples = (d for texture in self.textures for d in texture.dimples(self.length))
+        return (*self.pockets, *dimples)
+
+    @property
     def is_plain(self) -> bool:
         """One concentric 360 degree bore without grooves: the same seen from every angle."""
-        smooth = not (self.grooves or self.pockets)
+        smooth = not (self.grooves or self.pockets or self.textures)
         return smooth and all(arc.preload == 0.0 for arc in self.arcs)
 
     @property
@@ -379,6 +434,9 @@ class Bearing:
             arcs=tuple(replace(a, start=a.start + angle, end=a.end + angle) for a in self.arcs),
             pockets=tuple(
                 replace(p, start=p.start + angle, end=p.end + angle) for p in self.pockets
+            ),
+            textures=tuple(
+                replace(t, start=t.start + angle, end=t.end + angle) for t in self.textures
             ),
             pads=tuple(replace(p, pivot_angle=p.pivot_angle + angle) for p in self.pads),
             misalignment=(

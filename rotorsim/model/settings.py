@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import pairwise
@@ -47,6 +48,46 @@ class FlowRegime(StrEnum):
     NG_PAN = "ng_pan"
     CONSTANTINESCU = "constantinescu"
     HIRS = "hirs"
+
+
+class RoughnessPattern(StrEnum):
+    """Direction of the asperities (Patir & Cheng)."""
+
+    ISOTROPIC = "isotropic"
+    LONGITUDINAL = "longitudinal"
+    """Along the motion."""
+    TRANSVERSE = "transverse"
+
+
+@dataclass(frozen=True)
+class SurfaceRoughness:
+    """Roughness of both walls, for the flow factors of Patir & Cheng.
+
+    journal, bush : Standard deviations of the heights [m].
+    aspect : Length over width of a typical asperity where the pattern has a direction: 3, 6 or 9.
+    """
+
+    journal: Annotated[float, Quantity("length", "0.4 um", "not_negative")] = 0.0
+    bush: Annotated[float, Quantity("length", "0.8 um", "not_negative")] = 0.0
+    pattern: RoughnessPattern = RoughnessPattern.ISOTROPIC
+    aspect: Annotated[float, Number(least=3.0, most=9.0)] = 6.0
+
+    def __post_init__(self) -> None:
+        check(self, "film.roughness")
+        if self.aspect not in (3.0, 6.0, 9.0):
+            raise InputError("must be 3, 6 or 9", key="film.roughness.aspect", value=self.aspect)
+
+    @property
+    def combined(self) -> float:
+        """Standard deviation of both walls' heights together [m]."""
+        return math.hypot(self.journal, self.bush)
+
+    @property
+    def gamma(self) -> float:
+        """Length over width of a typical asperity, along the motion."""
+        if self.pattern is RoughnessPattern.ISOTROPIC:
+            return 1.0
+        return self.aspect if self.pattern is RoughnessPattern.LONGITUDINAL else 1.0 / self.aspect
 
 
 class Inception(StrEnum):
@@ -194,6 +235,7 @@ class FilmSettings:
     rotations: bool = False
     flow: FlowRegime = FlowRegime.LAMINAR
     transition: Annotated[tuple[float, float] | str, _TransitionEntry()] = (500.0, 1000.0)
+    roughness: SurfaceRoughness | None = None
 
     def __post_init__(self) -> None:
         check(self, "film")

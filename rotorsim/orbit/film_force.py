@@ -247,6 +247,7 @@ def can_be_mapped(case: Case) -> bool:
         and case.thermal.expansion is None
         and case.film.cavitation in MAPPED
         and case.film.flow is FlowRegime.LAMINAR
+        and case.film.roughness is None
         and case.film.inception is Inception.FREE
     )
 

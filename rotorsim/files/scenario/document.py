@@ -95,7 +95,7 @@ def _is_deep_key(line: str) -> bool:
 
 
 _PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
-_REPEATED = ("bearing.groove", "bearing.arc", "bearing.pocket")
+_REPEATED = ("bearing.groove", "bearing.arc", "bearing.pocket", "bearing.texture")
 _EXAMPLE = 'every entry reads like length = "80 mm"'
 _NUMBER_BEFORE = re.compile(r"[+-]?\d[\d.]*(?:e[+-]?\d+)?\s*$", re.IGNORECASE)
 _MAX_SHOWN = 60
