@@ -162,8 +162,10 @@ def _pocket_depth(bearing: Bearing, mesh: FilmMesh, theta: Array) -> Array:
     """Depth of the pockets [m], (5, n, m), each cell's faces seen from inside it."""
     y, inward = mesh.y, 1e-9 * np.diff(mesh.y_faces)
     along = np.stack([y, y, y, mesh.y_faces[:-1] + inward, mesh.y_faces[1:] - inward])[:, None]
-    depths = [pocket.deepening(theta, along, bearing.length) for pocket in bearing.hollows]
-    return np.max(np.broadcast_arrays(*depths), axis=0)
+    depth = np.zeros((5, *mesh.shape))
+    for hollow in bearing.hollows:
+        np.maximum(depth, hollow.deepening(theta, along, bearing.length), out=depth)
+    return depth
 
 
 @dataclass(frozen=True)

@@ -124,7 +124,8 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
 def _edges(bearing: Bearing) -> list[float]:
     """Angles at which a groove or a lobe begins or ends [rad]; the grooves' first."""
     edges = [edge for groove in bearing.grooves for edge in groove_edges(groove)]
-    edges += [e for p in bearing.hollows if not p.is_ring for e in (p.start, p.end)]
+    rows = (e for p in bearing.hollows if not p.is_ring for e in (p.start, p.end))
+    edges += dict.fromkeys(rows)
     return edges + [e for arc in bearing.arcs if arc.preload > 0.0 for e in (arc.start, arc.end)]
 
 

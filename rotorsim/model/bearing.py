@@ -197,18 +197,15 @@ class Texture:
     def dimples(self, bearing_length: float) -> Iterator[Pocket]:
         """Every dimple, in the middle of its own share of the area."""
         length = bearing_length if self.length is None else self.length
-        pitch, row, part = (
-            (self.end - self.start) / self.around,
-            length / self.along,
-            self.area_share,
-        )
+        pitch, row = (self.end - self.start) / self.around, length / self.along
+        side = math.sqrt(self.area_share)
         for i in range(self.around):
             middle = self.start + (i + 0.5) * pitch
-            half = 0.5 * math.sqrt(part) * pitch
+            half = 0.5 * side * pitch
             for j in range(self.along):
                 at = (j + 0.5) * row - 0.5 * length
                 yield Pocket(
-                    middle - half, middle + half, self.depth, length=math.sqrt(part) * row,
+                    middle - half, middle + half, self.depth, length=side * row,
                     at=at if abs(at) > 1e-9 * length else 0.0,
                 )  # fmt: skip
 
