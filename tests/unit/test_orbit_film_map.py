@@ -108,9 +108,10 @@ def test_the_files_name_changes_with_all_that_the_numbers_depend_on(coarse, tmp_
 
 
 def test_films_that_no_map_can_hold_are_refused(tmp_path):
-    for kind in ("jfo", "full_sommerfeld"):
-        with pytest.raises(InputError, match="no map holds this film"):
-            film_force_map(0.5, kind, cache=tmp_path)
+    with pytest.raises(InputError, match="no map holds this film"):
+        film_force_map(0.5, "jfo", cache=tmp_path)
+    with pytest.raises(InputError, match="out of range"):
+        film_force_map(0.5, leakage=0.0, cache=tmp_path)
 
 
 def test_the_cache_folder_follows_the_environment(monkeypatch, tmp_path):

@@ -340,7 +340,7 @@ def test_a_heated_film_has_the_viscosity_of_the_moments_speed():
     assert "viscosity field of the moment" in known.note
     frozen = loaded_film(film, high).force
     slow = operating_film(replace(film, target=LoadTarget(known.load)), low)
-    own = SolvedFilmForce.of(film, slow)
+    own = SolvedFilmForce.of(slow)
     x, y = find_equilibrium(own, (known.load, 0.0), low)
     exact = np.array(own.force(x, y, 0.0, 0.0, low))
     moment = np.array(known.force.force(x, y, 0.0, 0.0, low))

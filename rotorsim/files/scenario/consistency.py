@@ -357,7 +357,7 @@ def _check_actuator(orbit: OrbitSettings, scenario: Scenario) -> None:
     rotor_kind = "" if scenario.rotor is None else scenario.rotor.kind
     film, linear = scenario.film, orbit.force is OrbitForce.LINEAR
     free = film.inception is Inception.FREE
-    fixed = film.cavitation in (Cavitation.REYNOLDS, Cavitation.HALF_SOMMERFELD)
+    fixed = film.cavitation is not Cavitation.JFO
     isothermal = set(scenario.thermal_models) == {ThermalModel.ISOTHERMAL}
     plain = scenario.bearing.is_plain and scenario.bearing.is_symmetric
     # from the third on: what `rotorsim.orbit.can_be_mapped` asks of a film
@@ -375,7 +375,7 @@ def _check_actuator(orbit: OrbitSettings, scenario: Scenario) -> None:
         (linear or free, f'{kept}inception = "free" in [film]; or take force = "linear"'),
         (
             linear or fixed,
-            f'{kept}cavitation = "reynolds" or "half_sommerfeld"; or take force = "linear"',
+            f'{kept}cavitation other than "jfo"; or take force = "linear"',
         ),
         (
             linear or isothermal,
