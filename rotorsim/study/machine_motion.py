@@ -61,7 +61,7 @@ _REDUCTION = 1e-4
 """Relative change of eigenvalues that a reduction may bring."""
 _SMALL = 48
 """Unknowns of a rotor that is not reduced."""
-_MIN_MODES = 4
+_MIN_MODES = 8
 _SHOWN_TURNS, _SHOWN_FRAMES = 8, 40
 """Turns at the end whose films are shown eight times each, and moments over the whole run."""
 _STOP = 0.98
