@@ -154,7 +154,7 @@ class _Independent:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("rpm", "unbalance"), [(3000.0, "2000 g*mm"), (8000.0, "0 g*mm")])
+@pytest.mark.parametrize(("rpm", "unbalance"), [(3000.0, "2000 g*mm")])
 def test_two_discs_on_short_films_against_unreduced_equations(tmp_path, rpm, unbalance) -> None:
     orbit = (
         f'[orbit]\nforce = "short"\nspeed = "{rpm} rpm"\nrevolutions = 12\n'

@@ -32,7 +32,7 @@ ROOT = "machine"
 _FRAMES_PER_TURN = 16
 _FRAMES = 16_000
 """At most, of one run."""
-_SHOWN_SWING = 0.3
+_SHOWN_SWING = 1.2
 """Largest deflection from the static line as drawn, over the largest radius of the shaft."""
 _CHUNK = 4_096
 _STEEL, _DISC, _MARK, _HOUSING = (170, 178, 190), (86, 140, 190), (230, 159, 0), (110, 120, 130)
