@@ -21,6 +21,7 @@ class _Profile(StrEnum):
     PLAIN = "plain"
     GROOVED = "grooved"
     ELLIPTICAL = "elliptical"
+    PRESSURE_DAM = "pressure_dam"
     TILTING_PAD = "tilting_pad"
 
 
@@ -365,6 +366,22 @@ profile = "elliptical"              # or "three_lobe", "offset_halves"
 preload = 0.5                       # 1 - (assembled clearance / lobe clearance)
 """
     + _GROOVES,
+    "pressure_dam": _GROOVES
+    + """
+# The dam: a pocket in the unloaded half that ends in a step; its pressure holds the journal down.
+[[bearing.pocket]]
+start = "100 deg"                   # behind the groove
+end = "225 deg"
+depth = "150 um"                    # depth_at_end: a taper
+length = "60 mm"
+
+# The relief track through the loaded half; without it the bearing carries more and whirls earlier.
+[[bearing.pocket]]
+start = "-80 deg"
+end = "80 deg"
+depth = "150 um"
+length = "20 mm"
+""",
     "tilting_pad": """
 # The clearance above is the machined one: pad radius less journal radius. Pads all alike; pads of
 # their own are written one by one as [[bearing.pad]] with pivot_angle and what differs.
@@ -390,6 +407,7 @@ thermal_conductivity = "0.13 W/(m*delta_degC)"
 
 [film]
 cavitation = "reynolds"             # full_sommerfeld | half_sommerfeld | reynolds | jfo
+flow = "laminar"                    # "turbulent" where rho U c/mu reaches some 500
 {begins}mesh = {{ circumferential = {around}, axial = 24, cross_film = 16 }}  # try half, and double
 
 [thermal]
@@ -445,7 +463,7 @@ initial_displacement = ["1 um", "0 um"]
 def _scenario_text(title: str, profile: str, target: tuple[str, str | float], iso_vg: float) -> str:
     """TOML text of a new scenario.
 
-    profile : ``plain``, ``grooved``, ``elliptical`` or ``tilting_pad``.
+    profile : A member of `_Profile`.
     target : (str, value). ``("load", "10 kN")`` or ``("eccentricity", 0.5)``.
     iso_vg : Grade of the oil.
     """

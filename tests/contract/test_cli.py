@@ -271,6 +271,7 @@ def test_export_to_csv_reads_back_as_the_same_table(tabulated):
         (),
         ("--profile", "grooved", "--load", "2000 lbf"),
         ("--profile", "elliptical", "--iso-vg", "46"),
+        ("--profile", "pressure_dam", "--load", "2 kN"),
         ("--eccentricity", "0.6"),
     ],
 )
