@@ -93,12 +93,13 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
 
     results = _analysed(output, path, workers)
     last = results[next(reversed(results))]
-    motion = None
+    motion, moved = None, {}
     if last.description.orbit is not None:
         from ..study.machine_motion import motion_document, simulate
 
         output.note("motion in time")
         motion = simulate(last.description, result=last)
+        moved = {"motion": motion_document(motion)}
     study = lateral_study(last)
     moving = sensitivities(last, workers)
     pictures = folder / "figures" / path.stem
@@ -129,7 +130,7 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
             "maps": [plane_document(one) for one in planes],
             "files": files,
         }
-        | ({} if motion is None else {"motion": motion_document(motion)})
+        | moved
     )
     if not (output.json or output.quiet):
         output.show(*map(_grid, tables.support_rows(results)), *_stability_tables(results))

@@ -237,7 +237,7 @@ def threshold(
         Static position [m] and the unstable mode there; or None: it stays stable.
     """
 
-    def least_stable(speed: float, guess: Array) -> tuple[complex, Array, Array]:
+    def least_stable(speed: float, guess: Array) -> tuple[complex, Array, ComplexArray]:
         plain = system.plain(speed, speed)
         rest, _ = static_position(system, plain, speed, guess)
         k, d = derivatives(rest, np.zeros_like(rest), speed, system.scale, plain)
@@ -295,7 +295,7 @@ def follow_limit_cycle(
     clearance = min(link.force.radial_clearance for link in system.links if link.film)
     shape = shape[held] / np.abs(shape[held]).max() * _FIRST * clearance
     c = np.zeros((balance.count, held.size))
-    c[0], c[1], c[1 + harmonics] = rest[held], shape.real, -shape.imag
+    c[0], c[1], c[1 + harmonics] = rest[held], np.real(shape), -np.imag(shape)
     start = np.concatenate([c.ravel() / clearance, [frequency / hopf, 1.0]])
     tangent = np.zeros_like(start)
     tangent[:-2] = c.ravel() / clearance

@@ -437,7 +437,7 @@ class _Exact:
         for k, (frequency, amplitude) in enumerate(forces):
             cos = 2 * n + 2 * k
             a[n : 2 * n, cos], a[n : 2 * n, cos + 1] = (
-                inverse @ amplitude.real, -inverse @ amplitude.imag
+                inverse @ np.real(amplitude), -inverse @ np.imag(amplitude)
             )  # fmt: skip
             a[cos, cos + 1], a[cos + 1, cos] = -frequency, frequency
         return a, [frequency for frequency, _ in forces]

@@ -282,7 +282,8 @@ class MotionSystem:
         force: BearingForce, here: Array, rate: Array, speed: float, slopes: bool
     ) -> tuple[Array, ...]:
         both = np.concatenate([here, rate])
-        before = np.array(force.force(*both, speed))
+        x, y, vx, vy = map(float, both)
+        before = np.array(force.force(x, y, vx, vy, speed))
         if not slopes:
             return (before,)
         columns, length = [], 1e-5 * force.radial_clearance
@@ -290,7 +291,8 @@ class MotionSystem:
             step = length if j < 2 else length * max(abs(speed), 1.0)
             moved = both.copy()
             moved[j] += step
-            columns.append((before - np.array(force.force(*moved, speed))) / step)
+            x, y, vx, vy = map(float, moved)
+            columns.append((before - np.array(force.force(x, y, vx, vy, speed))) / step)
         return before, np.column_stack(columns[:2]), np.column_stack(columns[2:])
 
     @staticmethod
@@ -333,7 +335,7 @@ class Plain(NamedTuple):
     block_step: float
 
 
-def _array(values: Array) -> Array:
+def _array(values: NDArray[np.floating]) -> Array:
     return np.ascontiguousarray(values, dtype=float)
 
 

@@ -293,7 +293,7 @@ def animate_machine(
         frames = np.concatenate([whole, frames])
     system, first = motion.problem.system, rotor.first_unknown
 
-    def shaft(rows: Array | NDArray[np.intp]) -> tuple[Array, Array]:
+    def shaft(rows: NDArray[np.intp]) -> tuple[Array, Array]:
         x, y = (motion.q[rows] @ system.basis[first + a].T + system.offset[first + a]
                 for a in (0, 1))  # fmt: skip
         return np.asarray(x), np.asarray(y)
