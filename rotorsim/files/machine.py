@@ -15,7 +15,8 @@ from typing import Annotated, Any
 
 from ..arguments import above_zero
 from ..bearing.table import CoefficientTable
-from ..errors import InputError, ScenarioError
+from ..errors import InputError, ScenarioError, TableError
+from ..file_kinds import is_missing
 from ..model.entries import NOT_IN_FILES, Example, Made, Number, Quantity, one_of
 from ..model.machine import (
     Clearance,
@@ -300,15 +301,17 @@ class MachineFile:
                         "must be a coefficient table: netCDF, CSV, or a bearing saved by ROSS",
                         key=key, value=entry.coefficients,
                     )  # fmt: skip
-                found[name] = read_table(path)
+                found[name] = _table(path, entry.coefficients_bearing, f"{key}_bearing")
                 found[name].interpolator()
         return found
 
     def _beside(self, name: str, key: str) -> Path:
         folder = Path() if self.source is None else self.source.parent
         path = folder / name
-        if not path.is_file():
+        if is_missing(path):
             raise InputError(f"no such file beside the machine's: {path}", key=key, value=name)
+        if not os.path.isfile(path):
+            raise InputError(f"{path} is no ordinary file", key=key, value=name)
         return path
 
     def rotor_with_unbalance(self, refinement: int = 1, more: Sequence[float] = ()) -> Rotor:
@@ -344,6 +347,17 @@ class MachineFile:
             for entry in self.rotor.unbalance
         ]
         return with_unbalance(rotor, planes)
+
+
+def _table(path: Path, bearing: str | None, key: str) -> CoefficientTable:
+    """Table of one bearing in a file; `key` is the machine file's that names it."""
+    try:
+        return read_table(path, bearing=bearing)
+    except TableError as error:
+        if error.key != "--bearing":
+            raise
+        message = error.message.replace("--bearing NAME", 'coefficients_bearing = "NAME"')
+        raise InputError(f"{path}: {message}", key=key, value=bearing) from None
 
 
 def load_machine(path: str | Path) -> MachineFile:

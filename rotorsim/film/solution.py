@@ -10,7 +10,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model import Bearing, Case, Cavitation, EccentricityTarget, LoadTarget, ThermalModel
+from ..model import (
+    Bearing,
+    Case,
+    Cavitation,
+    EccentricityTarget,
+    Inception,
+    LoadTarget,
+    ThermalModel,
+)
 from ..model.operating import is_unloaded
 from ..status import SolveStatus
 from .banded import NoFilmError, SingularFilmError
@@ -23,11 +31,12 @@ from .equilibrium import (
     LoadSearch,
     PlainSearch,
 )
-from .first_position import ForceField, balances_somewhere, first_positions
+from .first_position import ForceField, crossing, first_positions
 from .heat import Heat
 from .layers import isoviscous_layers
 from .mesh import mid_thickness
 from .problem import FilmProblem, FilmState, film_problem, film_state
+from .rupture import rupture_condition
 from .thd import (
     ROUGH_TOLERANCE,
     ThermalFilm,
@@ -51,6 +60,8 @@ _CLOSING = 0.6
 """Hot over cold clearance below which a film that does not converge may seize."""
 _FRAME_TOLERANCE = 1e-3
 """Angle [rad] between a misaligned plain film's frame and its line of centres."""
+_JUMP = 0.02
+"""Unbalanced force next to a place where it turns round, relative to the load, that is a jump."""
 _MAX_MESHES = 8
 """Times that the mesh may be graded anew for the position found."""
 
@@ -145,9 +156,17 @@ def solve_film(
 
     `walls` makes the walls of a heated film's problem; by default the steady ones.
     """
+    if not _is_fed(case):
+        return _unsolved(case, speed, SolveStatus.STARVED, _starved(case.bearing))
     if case.bearing.is_plain and case.bearing.is_symmetric:
         return _solve_plain(case, speed, initial, walls)
-    solution = _solve_general(case, speed, initial, walls)
+    try:
+        solution = _solve_general(case, speed, initial, walls)
+    except NoFilmError as error:
+        # At a given eccentricity other attitudes may leave more room.
+        if isinstance(case.target, LoadTarget):
+            raise
+        solution = _unsolved(case, speed, SolveStatus.NO_EQUILIBRIUM, str(error))
     lost = (SolveStatus.STARVED, SolveStatus.NO_EQUILIBRIUM)
     if solution.thermal is None:
         lost = (*lost, SolveStatus.NOT_CONVERGED)
@@ -156,31 +175,99 @@ def solve_film(
     return solution
 
 
+def _is_fed(case: Case) -> bool:
+    """Whether oil comes in anywhere: a film that conserves mass and loses oil at its ends must."""
+    bearing = case.bearing
+    begins = bearing.is_plain and case.film.inception is Inception.MAX_FILM
+    conserves = rupture_condition(case.film.cavitation).conserves_mass
+    return bool(not conserves or bearing.grooves or bearing.pads or begins)
+
+
+def _unsolved(case: Case, speed: float, status: SolveStatus, message: str) -> FilmSolution:
+    """Return the isothermal film of a journal somewhere, and why there is no other."""
+    position = _first_position(case)
+    problem = film_problem(case, speed, case.bearing, position)
+    nearer = _inside(problem, None, position)
+    viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
+    state = film_state(problem, nearer, isoviscous_layers(problem.mesh.shape, viscosity))
+    return FilmSolution(problem, state, None, 0.0, status, message, 1, 0.0)
+
+
 def _from_elsewhere(case: Case, speed: float, failed: FilmSolution, walls: WallsOf) -> FilmSolution:
     """Solve again from positions all over the clearance; `failed` if none leads to the load."""
     isothermal = replace(case, thermal=replace(case.thermal, model=ThermalModel.ISOTHERMAL))
     field = ForceField.of(case, speed)
-    positions = first_positions(field)
-    for position in positions:
+
+    def heated(solution: FilmSolution) -> FilmSolution | None:
+        if solution.status is not SolveStatus.CONVERGED or failed.thermal is None:
+            return solution if solution.status is SolveStatus.CONVERGED else None
+        return _solve_general(case, speed, solution.warm_start, walls)
+
+    def solved(position: _Position) -> FilmSolution | None:
         relative = _times(position, 1.0 / case.bearing.radial_clearance)
         warm = WarmStart(relative, None, failed.state.solution.full[:0])
         with suppress(NoFilmError, SingularFilmError):
-            solution = _solve_general(isothermal, speed, warm, walls)
-            if solution.status is SolveStatus.CONVERGED:
-                if failed.thermal is None:
-                    return solution
-                return _solve_general(case, speed, solution.warm_start, walls)
-    if not positions or not isinstance(case.target, LoadTarget):
+            return heated(_solve_general(isothermal, speed, warm, walls))
+        return None
+
+    positions = first_positions(field)
+    if not positions:
         return failed
-    if balances_somewhere(field, case.target.load) is not False:
-        return replace(failed, status=SolveStatus.NOT_CONVERGED, message=_NOT_FOUND)
-    return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=_no_position(failed, case))
+    for position in positions:
+        if found := solved(position):
+            return found
+    place = crossing(field)
+    if place is None:
+        return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=_nowhere(failed, case))
+    if found := solved(place.position):
+        return found
+    begins = case.bearing.is_plain and case.film.inception is Inception.MAX_FILM
+    if place.off > _JUMP and begins:  # at an angle that follows the journal, not the mesh
+        message = _jump(case, place.position)
+        return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=message)
+    # Kinks stand closer than a step of Newton's method, or the mesh, which follows the position,
+    # moves them: keep the mesh of that very position, and come nearer on it first.
+    frame = _frame_angle(case.bearing, place.position)
+    local = _turned(place.position, -frame)
+    problem = film_problem(isothermal, speed, case.bearing.turned(-frame), local)
+    nearer = crossing(replace(field, mesh=(problem, frame)), place.position)
+    if nearer is None or nearer.off > _JUMP:
+        message = _jump(case, place.position)
+        return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=message)
+    search, start = _search(case, problem, frame), np.array(_turned(nearer.position, -frame))
+    film = _iterate(problem, start, search, None, walls)
+    found = heated(_conclude(film, frame, search, film.iterations))
+    return found or replace(failed, status=SolveStatus.NOT_CONVERGED, message=_NOT_FOUND)
 
 
 _NOT_FOUND = (
-    "some journal position should carry the load, but none was found: the film's force jumps "
-    'nearby, or the mesh is too coarse. Try inception = "free", a finer mesh, or another load'
+    "some journal position should carry the load, but it was found on a coarse mesh only: the "
+    'force has a kink nearby, or the mesh is too coarse. Try inception = "free", a finer mesh, or '
+    "another load"
 )
+
+
+def _jump(case: Case, position: _Position) -> str:
+    """Say where the force jumps across the load, and what to try."""
+    eps = math.hypot(*position) / case.bearing.radial_clearance
+    advice = "another load or a finer mesh"
+    if case.film.inception is Inception.MAX_FILM:
+        advice = f'inception = "free", {advice}'
+    return (
+        f"no journal position carries the load: near eccentricity ratio {eps:.3g} and attitude "
+        f"{math.degrees(math.atan2(position[1], position[0])):.3g} deg the film's force jumps past "
+        f"it, as a stretch of film forms or vanishes there. Try {advice}"
+    )
+
+
+def _nowhere(failed: FilmSolution, case: Case) -> str:
+    if isinstance(case.target, LoadTarget):
+        return _no_position(failed, case)
+    return (
+        "at no attitude does the film carry a load along the load line at this eccentricity ratio: "
+        "the pressure of the supply outweighs what the motion makes. Give the load instead, a "
+        "lower supply pressure, or a higher speed"
+    )
 
 
 def _no_position(failed: FilmSolution, case: Case) -> str:
@@ -189,9 +276,10 @@ def _no_position(failed: FilmSolution, case: Case) -> str:
     carried = float(np.hypot(*failed.state.force))
     return (
         "no journal position within the clearance carries the load: wherever the journal goes, it "
-        f"comes within {thinnest * 1e6:.3g} um of the bore before the film balances it (the film "
+        f"comes within {thinnest * 1e6:.3g} µm of the bore before the film balances it (the film "
         f"carries {carried:.4g} N at the last position tried). A heavier load needs more speed, "
-        "viscosity or size; a groove or a joint under the load line, or misalignment, leaves less"
+        "viscosity or size; a groove or a joint under the load line, misalignment, or film that is "
+        'kept from forming again (inception = "max_film") leaves less'
     )
 
 
@@ -323,7 +411,7 @@ def _solve_general(
             return _conclude(film, frame, search, effort.iterations)
 
 
-def _inside(problem: FilmProblem, search: _Search, position: _Position) -> _Position:
+def _inside(problem: FilmProblem, search: _Search | None, position: _Position) -> _Position:
     """Return a first position that leaves a film everywhere, nearer to the centre if need be."""
     for share in (1.0, 0.7, 0.4, 0.0):
         nearer = (share * position[0], share * position[1])
@@ -442,6 +530,19 @@ def _iterate_isothermal(
     return _Iterate(state, None, done, step, off)
 
 
+def _starved(bearing: Bearing) -> str:
+    """Say that no film forms, and what to try."""
+    advice = "A mass-conserving film needs a supply: a groove"
+    if bearing.grooves:
+        advice = (
+            "The oil of the grooves does not fill the bearing anywhere behind them: move a groove "
+            "further ahead of the load line, or raise its supply pressure"
+        )
+    elif bearing.is_plain:
+        advice += ', or inception = "max_film"'
+    return f"no film forms: the pressure is nowhere above zero. {advice}"
+
+
 def _conclude(
     film: _Iterate, frame: float, search: _Search | None, iterations: int
 ) -> FilmSolution:
@@ -455,12 +556,7 @@ def _conclude(
         pass  # no pressure, and yet a film
     elif not solution.pressure.max() > 0.0 or not solution.full.any():
         status = SolveStatus.STARVED
-        message = "no film forms: the pressure is nowhere above zero. " + (
-            "The oil of the grooves does not fill the bearing anywhere behind them: move a groove "
-            "further ahead of the load line, or raise its supply pressure"
-            if film.state.operator.fixed.any()
-            else 'A mass-conserving film needs a supply: a groove, or inception = "max_film"'
-        )
+        message = _starved(problem.bearing)
     elif search is not None and search.unreachable and not film.converged:
         status = SolveStatus.NO_EQUILIBRIUM
         message = (

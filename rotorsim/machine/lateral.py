@@ -114,7 +114,7 @@ def _margin_check(peak: Peak, place: str, continuous: tuple[float, float], editi
 
 
 def _vibration_limit(speed: float) -> float:
-    """Peak-to-peak limit at probes, min(25.4, 25.4 sqrt(12000/N)) um [m].
+    """Peak-to-peak limit at probes, min(25.4, 25.4 sqrt(12000/N)) µm [m].
 
     speed : Maximum continuous speed [rad/s].
     """
@@ -128,7 +128,7 @@ def _probe_check(
     value = _largest(response.speed, 2.0 * response.major_axis, continuous)
     return _judged(
         "vibration at the probe", f"{response.name}, {case}", value, "<=",
-        _vibration_limit(continuous[1]), "m", "min(25.4, 25.4 sqrt(12000/N)) um peak to peak",
+        _vibration_limit(continuous[1]), "m", "min(25.4, 25.4 sqrt(12000/N)) µm peak to peak",
         edition,
     )  # fmt: skip
 

@@ -193,6 +193,7 @@ class SupportEntry:
     at : [m]
     bearing : File of a bearing's scenario, relative to the machine's file.
     coefficients : File of a coefficient table, in the frame of its static load.
+    coefficients_bearing : Which bearing of that file, where it holds several.
     stiffness, damping, mass : (2, 2) tuples or None. Constants, in the machine's frame turned by
         `angle`.
     elevation : Of the housing, upwards [m].
@@ -206,6 +207,7 @@ class SupportEntry:
     name: str = ""
     bearing: str | None = None
     coefficients: str | None = None
+    coefficients_bearing: str | None = None
     stiffness: _StiffnessMatrix | None = None
     damping: _DampingMatrix | None = None
     mass: _MassMatrix | None = None
@@ -230,10 +232,12 @@ class SupportEntry:
                 f"stiffness = ...{' (it has ' + ' and '.join(given) + ')' if given else ''}",
                 key="bearing" if not given else given[1],
             )
-        _constants_alone(self, given[0])
+        _check_companions(self, given[0])
 
 
-def _constants_alone(entry: Any, given: str) -> None:
+def _check_companions(entry: Any, given: str) -> None:
+    if given != "coefficients" and entry.coefficients_bearing is not None:
+        raise InputError("goes with coefficients", key="coefficients_bearing")
     for key in ("damping", "mass"):
         if given != "stiffness" and getattr(entry, key) is not None:
             raise InputError(f"goes with stiffness, not with {given}", key=key)
@@ -243,13 +247,14 @@ def _constants_alone(entry: Any, given: str) -> None:
 class SealEntry:
     """A seal or an impeller: acts on the motion, and carries no static load.
 
-    at, name, coefficients, stiffness, damping, mass : As for `SupportEntry`; a table is taken in
-        the machine's frame.
+    at, name, coefficients, coefficients_bearing, stiffness, damping, mass : As for `SupportEntry`;
+        a table is taken in the machine's frame.
     """
 
     at: Annotated[Place, Example("700 mm")]
     name: str = ""
     coefficients: str | None = None
+    coefficients_bearing: str | None = None
     stiffness: _StiffnessMatrix | None = None
     damping: _DampingMatrix | None = None
     mass: _MassMatrix | None = None
@@ -260,8 +265,7 @@ class SealEntry:
             raise InputError(
                 'needs one of coefficients = "file.csv" or stiffness = ...', key="coefficients"
             )
-        if given:
-            _constants_alone(self, given[0])
+        _check_companions(self, given[0] if given else "stiffness")
 
 
 @dataclass(frozen=True)

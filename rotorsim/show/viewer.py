@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InputError
+from ..file_kinds import is_missing
 
 _ANALYTICS_NOTE = (
     "The rerun viewer reports anonymous usage to its makers unless told not to:"
@@ -46,7 +47,8 @@ def open_viewer(path: str | Path) -> ViewerLaunch:
     """
     recording = Path(path)
     if not recording.is_file():
-        raise InputError("there is no such recording; `rotorsim run` writes one", source=recording)
+        what = "there is no such recording; `rotorsim run` writes one"
+        raise InputError(what if is_missing(recording) else "is no recording", source=recording)
     program = viewer_program()
     if program is None:
         return ViewerLaunch(False, "The rerun-sdk package has no viewer on this platform.", 1)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from rotorsim.files.machine import MachineFile, is_machine, load_machine
 from rotorsim.machine.statics import static_equilibrium, weight
 from rotorsim.study.machine import analyse_machine, destabilised_by_heating
 
+DATA = Path(__file__).parents[1] / "data"
 SHAFT = """
 title = "test rotor"
 [rotor]
@@ -275,3 +278,39 @@ def test_pads_stand_by_a_machine_s_x_whatever_load_their_own_file_has(tmp_path):
     # The load falls on machine x: on the first pad, or 20 degrees before it.
     assert loads["plain"][1] == pytest.approx(loads["plain"][3], rel=1e-6)
     assert loads["angle"][3] > 1.05 * loads["angle"][1]
+
+
+def test_one_bearing_of_several_in_a_file_is_named_by_a_key(here: CommandLine, tmp_path):
+    ross = DATA / "cases" / "11-several-bearings" / "two.toml"
+    (tmp_path / "two.toml").write_text(ross.read_text(encoding="utf-8"), encoding="utf-8")
+    carried = '[[support]]\nat = "{}"\ncoefficients = "two.toml"\n{}'
+    places = ("0 mm", "1 m")
+
+    def written(named: str) -> str:
+        text = SHAFT + "\n".join(carried.format(place, named) for place in places)
+        (tmp_path / "machine.toml").write_text(text, encoding="utf-8")
+        return "machine.toml"
+
+    done = here("check", written(""))
+    assert done.returncode == 2
+    assert 'choose one with coefficients_bearing = "NAME"' in done.stderr
+    assert "--bearing" not in done.stderr
+    done = here("check", written('coefficients_bearing = "nobody"'))
+    assert done.returncode == 2
+    assert "support[0].coefficients_bearing" in done.stderr
+    assert "no bearing has that name" in done.stderr
+    found = here("check", written('coefficients_bearing = "b"'))
+    assert found.returncode == 0, found.stderr
+    springs = SHAFT + SPRINGS.replace("stiffness", 'coefficients_bearing = "b"\nstiffness')
+    with pytest.raises(InputError, match="goes with coefficients"):
+        MachineFile.from_text(springs)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="POSIX")
+def test_a_pipe_is_no_bearing(tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    for key in ("bearing", "coefficients"):
+        text = SHAFT + f'[[support]]\nat = "0 mm"\n{key} = "pipe.toml"\n'
+        (tmp_path / "machine.toml").write_text(text, encoding="utf-8")
+        with pytest.raises(InputError, match="is no ordinary file"):
+            analyse_machine(load_machine(tmp_path / "machine.toml"))

@@ -355,7 +355,8 @@ def _fill(
                 if interior[1, i, j]:
                     right[after, j] += couette[0, after, j]
             else:
-                band[middle, column] = couette[1, i, j] + rate[i, j]
+                # A ring of ruptured cells that nothing feeds runs dry, rather than hold any oil.
+                band[middle, column] = couette[1, i, j] * (1.0 + 1e-13) + rate[i, j]
                 if interior[1, i, j]:
                     row = position[after] * m + j
                     band[middle + row - column, column] -= couette[0, after, j]
