@@ -157,7 +157,7 @@ class NodalFilm:
             reach = self.reach(angle)
             for share in SHARES:
                 q = share * reach * np.array([math.cos(angle), math.sin(angle)])
-                scan.append((math.hypot(*(self.force(*q, 3e-5) / load + [1.0, 0.0])), *q))
+                scan.append((math.hypot(*(self.force(q[0], q[1], 3e-5) / load + [1.0, 0.0])), *q))
         return min(self._improved(np.array(q), load) for _, *q in sorted(scan)[:4])
 
     def _improved(self, q, load):
