@@ -192,7 +192,8 @@ def _machine_control(
         return DONE
     growth = float(study.controlled_eigenvalues[0].real)
     if growth >= 0.0:
-        output.warn(f"the whole machine stays unstable: growth rate {growth:.4g} 1/s")
+        word = f"unstable: growth rate {growth:.4g} 1/s" if growth else "undamped"
+        output.warn(f"the whole machine stays {word}")
     elif not study.holds:
         output.warn(
             f"stable in the small, but its run at {speed * RPM:.0f} rpm does not come to rest"
@@ -255,7 +256,8 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
         row = said[name]
         lengths = (row["largest_displacement"], row["final_displacement"])
         table.add_row(
-            name, number(row["growth_rate"]), number(abs(values[0].imag) / 6.283185307179586),
+            name, number(row["growth_rate"]) if row["growth_rate"] else "undamped",
+            number(abs(values[0].imag) / 6.283185307179586),
             *(number(None if one is None else one * 1e6) for one in lengths),
         )  # fmt: skip
     reduction = study.reduction

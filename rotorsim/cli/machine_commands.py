@@ -12,22 +12,23 @@ from .output import DONE, INCOMPLETE, Output, as_typed, film_progress, progress_
 from .tables import grid
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
     from rich.table import Table
 
     from ..files.machine import MachineFile
     from ..orbit.motion import Motion
     from ..study.machine import MachineResult
-    from ..study.sensitivity import Sensitivity
 
 
 def check_machine(output: Output, path: Path) -> int:
     """Validate a machine file and say what would run."""
     from ..bearing.drawing import STANDARD_GRAVITY
     from ..files.machine import load_machine
+    from ..study.machine import pinned_mesh_change
 
     loaded = load_machine(path)
+    change = pinned_mesh_change(loaded)
     rotor, beam = loaded.rotor_with_unbalance(), loaded.rotor.beam
     speeds = loaded.operating.speeds
     names = loaded.support_names
@@ -37,6 +38,7 @@ def check_machine(output: Output, path: Path) -> int:
         "length": beam.length,
         "mass": rotor.total_mass,
         "nodes": len(rotor.nodes),
+        "mesh_change": change,
         "discs": len(beam.discs),
         "supports": [
             {"name": name, "at": entry.at, "kind": _kind(entry)}
@@ -48,6 +50,8 @@ def check_machine(output: Output, path: Path) -> int:
     if not (output.json or output.quiet):
         table = grid(loaded.title, "", "")
         table.add_row("shaft", f"{number(beam.length * 1e3)} mm, {len(rotor.nodes)} nodes")
+        moved = f"twice as many elements move the lowest frequencies by {number(100 * change, 2)} %"
+        table.add_row("mesh, supports rigid", moved)
         weight = rotor.total_mass * STANDARD_GRAVITY / 1e3
         table.add_row("mass of the rotor", f"{number(rotor.total_mass)} kg ({number(weight)} kN)")
         table.add_row("discs and added masses", str(len(beam.discs)))
@@ -58,9 +62,20 @@ def check_machine(output: Output, path: Path) -> int:
         for name, entry in zip(names, loaded.support, strict=True):
             supports.add_row(name, number(entry.at * 1e3), _kind(entry))
         output.show(table, supports)
-    if not loaded.support:
-        output.warn("the rotor is free: the file has no [[support]]")
+    _say_free(output, loaded)
     return DONE
+
+
+def _say_free(output: Output, machine: MachineFile) -> None:
+    from ..study.machine import free_motions
+
+    free = free_motions(machine)
+    if free:
+        why = "no stiffness" if machine.support else "no [[support]]"
+        output.warn(
+            f"the rotor is free in {free} of the shaft's 4 rigid motions (two displacements, two "
+            f"tilts): {why} holds it there"
+        )
 
 
 def _kind(entry: Any) -> str:
@@ -135,7 +150,7 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
     if not (output.json or output.quiet):
         output.show(*map(_grid, tables.support_rows(results)), *_stability_tables(results))
         output.show(*map(_grid, (*tables.peak_rows(study), *tables.check_rows(study))))
-        output.show(*_sensitivity_tables(moving))
+        output.show(*map(_grid, tables.moving_rows(moving)))
         for plane in planes:
             output.show(*plane_table(plane))
         output.note(f"figures: {pictures}; recording: {files['recording'][0]}")
@@ -235,36 +250,16 @@ def report_machine(output: Output, path: Path, page: Path, workers: int | None) 
     """Write the report of a machine."""
     from ..show.report.machine import write_machine_report
     from ..study.lateral import lateral_study
+    from ..study.sensitivity import sensitivities
 
     results = _analysed(output, path, workers)
-    study = lateral_study(results[next(reversed(results))])
+    last = results[next(reversed(results))]
+    study, moving = lateral_study(last), sensitivities(last, workers)
     output.note("report")
-    written = write_machine_report(results, study, page)
+    written = write_machine_report(results, study, page, moving)
     output.document({"report": written, "notes": list(study.notes)})
     output.show(f"{written} is written; open it in a browser")
     return _closing(output, results)
-
-
-def _sensitivity_tables(moving: Sequence[Sensitivity]) -> Iterator[Table]:
-    if not moving:
-        return
-    head = ("bearing or place", "parameter", "changed by", "threshold rpm", "growth 1/s")
-    table = grid("What moves the stability threshold", *head)
-    for one in moving:
-        moved = one.threshold_change
-        table.add_row(
-            one.support, one.parameter.replace("_", " "), _change(one),
-            "-" if moved is None else f"{moved * RPM:+.0f}", f"{one.growth_rate_change:+.3g}",
-        )  # fmt: skip
-    yield table
-
-
-def _change(one: Sensitivity) -> str:
-    if one.parameter == "supply_temperature":
-        return f"{one.change:+g} K"
-    if one.parameter == "destabilising_stiffness":
-        return f"{one.change / 1e6:+.3g} MN/m"
-    return f"{one.change:+g}" if one.parameter == "preload" else f"{one.change / one.value:+.0%}"
 
 
 def _grid(rows: tables.Rows) -> Table:
@@ -303,9 +298,11 @@ def analysed(
 def _closing(output: Output, results: dict[str, MachineResult]) -> int:
     """Say the verdict and what did not converge; return the exit code."""
     failures = tables.failure_lines(results)
+    _say_free(output, results[next(reversed(results))].description)
     for text in failures:
         output.warn(text)
-    for text in (*tables.verdict_lines(results), *tables.heating_lines(results)):
+    said = [*tables.verdict_lines(results), *tables.heating_lines(results)]
+    for text in (tables.mesh_line(results[next(reversed(results))]), *said):
         output.note(text)
     return INCOMPLETE if failures else DONE
 

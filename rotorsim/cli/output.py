@@ -131,7 +131,7 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
             show_units(units or _usual_units())
             code = command(output, **options)
         except Exception as error:
-            code = _explain(error, output)
+            code = _explain(_naming_machine(error, options), output)
         except KeyboardInterrupt as stop:
             kept = "; ".join(output.kept) or "nothing was changed"
             output.errors.print(f"interrupted: {kept}")
@@ -178,6 +178,22 @@ def _usual_units() -> str:
     if units not in ("si", "us"):
         raise InputError('must be "si" or "us"', source=str(path), key="units", value=units)
     return units
+
+
+def _naming_machine(error: Exception, options: dict[str, Any]) -> Exception:
+    """Error with the machine file that the command was given, where a key is all it names."""
+    from pathlib import Path
+
+    if not isinstance(error, InputError) or error.source or str(error.key or "-").startswith("-"):
+        return error
+    from ..files.machine import is_machine
+
+    path = next(
+        (one for one in options.values() if isinstance(one, Path) and is_machine(one)), None
+    )
+    if path is None:
+        return error
+    return InputError(error.message, source=path, key=error.key, value=error.value)
 
 
 def _explain(error: Exception, output: Output) -> int:

@@ -120,8 +120,8 @@ def _beam(
         section, disc, Material(youngs_modulus, density, poisson_ratio, shear_modulus), shear,
         axial_force, internal_damping, rotation == _ROTATIONS[0], modal_damping=modal_damping,
     )  # fmt: skip
-    for entry in unbalance:
-        beam.check_place(entry.at, "rotor.unbalance.at")
+    for i, entry in enumerate(unbalance):
+        beam.check_place(entry.at, f"rotor.unbalance[{i}].at")
     return RotorDrawing(beam, unbalance)
 
 
@@ -189,7 +189,10 @@ class MachineFile:
         places = [entry.at for entry in self.support]
         for i, at in enumerate(places):
             if any(abs(at - other) < 1e-6 * beam.length for other in places[:i]):
-                raise InputError("another support stands at this place", key=f"support[{i}].at")
+                raise InputError(
+                    "another support stands at this place; what acts beside it is a [[seal]]",
+                    key=f"support[{i}].at",
+                )
 
     @classmethod
     def from_text(cls, text: str, source: str | Path | None = None) -> MachineFile:

@@ -83,8 +83,8 @@ class Beam:
                     "another coupling stands at this place", key=f"coupling[{i}].at",
                     value=coupling.at,
                 )  # fmt: skip
-        for disc in self.discs:
-            self.check_place(disc.at, "rotor.disc.at")
+        for i, disc in enumerate(self.discs):
+            self.check_place(disc.at, f"rotor.disc[{i}].at")
 
     def _check_layers(self) -> None:
         slack = _SAME_PLACE * self.length

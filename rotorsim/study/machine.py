@@ -53,6 +53,8 @@ _GIVEN = "given"
 """Name of the thermal model of a machine without films."""
 _MESH_MODES = 8
 """Modes whose change on twice the mesh is stated."""
+_RIGID = 1e-13
+"""Of the largest squared frequency: below, a free shaft's motion without bending."""
 _SUBDIVISIONS = 4
 """Of every interval of speeds, where thresholds are looked for."""
 
@@ -141,7 +143,8 @@ class MachineResult:
             for mount in self.machine.mounts
         ]
         top = float(self.known[-1])
-        here = modes(self.machine, top).oscillating().eigenvalues[0]
+        here = self.modes.oscillating().eigenvalues[-1]
+        here = here[np.isfinite(here)]
         finer = modes(Machine(fine, mounts), top).oscillating().eigenvalues[0]
         wanted = np.sort_complex(1j * here.imag)[:_MESH_MODES].imag
         found = []
@@ -197,6 +200,43 @@ def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[Hea
             after = float(other.growth_rate[0, k])
             found.append(HeatedMode(float(other.damped_frequency[0, k]), before, after))
     return found
+
+
+def pinned_mesh_change(description: MachineFile) -> float:
+    """Largest relative change on twice the mesh of the lowest natural frequencies at rest.
+
+    The shaft is held where its supports stand: before any film is solved.
+    """
+    from scipy.linalg import eigh
+
+    lowest = []
+    for refinement in (1, 2):
+        rotor = description.rotor_with_unbalance(refinement)
+        held = [k for one in description.support for k in rotor.planes[node_at(rotor, one.at)]]
+        free = np.setdiff1d(np.arange(rotor.size), held)
+        places = np.ix_(free, free)
+        squares = eigh(rotor.stiffness[places], rotor.mass[places], eigvals_only=True)
+        elastic = squares[squares > _RIGID * squares[-1]]
+        lowest.append(np.sqrt(elastic[:_MESH_MODES]))
+    count = min(map(len, lowest))
+    return float(np.abs(lowest[1][:count] / lowest[0][:count] - 1.0).max(initial=0.0))
+
+
+def free_motions(description: MachineFile) -> int:
+    """Rigid motions of the shaft, of 4 (two displacements, two tilts), that no stiffness resists.
+
+    Films and tables count as stiff in both directions.
+    """
+    held = [np.zeros((1, 4))]
+    for entry in description.support:
+        own = np.eye(2) if entry.stiffness is None else np.array(entry.stiffness)
+        for stand in (entry.pedestal, entry.damper):
+            if stand is not None and not np.any(stand.stiffness):
+                own = np.zeros((2, 2))
+        size = float(np.abs(own).max())
+        z = entry.at / description.rotor.beam.length
+        held.append(np.hstack([own, z * own]) / (size or 1.0))
+    return 4 - int(np.linalg.matrix_rank(np.vstack(held), tol=1e-9))
 
 
 def analyse_machine(

@@ -27,6 +27,7 @@ from ..machine.output_feedback import (
 )
 from ..machine.peaks import node_at
 from ..machine.reduction import Reduction, reduced
+from ..machine.spectrum import all_eigenmodes
 from ..model.machine import MachineControl
 from ..model.orbit import Design
 
@@ -52,7 +53,7 @@ class MachineControlStudy:
     system : The whole machine: forces at the actuators to displacements at the sensors, x and y of
         each.
     passive_eigenvalues, controlled_eigenvalues : complex arrays. Of the whole machine [1/s], least
-        stable first.
+        stable first; undamped ones without real part.
     margin : See `modulus_margin`.
     passive, controlled : Of the whole machine, from the shape of its least stable mode; None
         without a run.
@@ -140,7 +141,7 @@ def study_machine_control(
         # What the reduced model leaves out is excited by the feedback: leave out less.
         share /= 10.0
     closed, _ = feedback.closed_loop(system)
-    passive, controlled = _sorted(system.poles()), _sorted(np.linalg.eigvals(closed))
+    passive, controlled = (_least_stable_first(a) for a in (np.asarray(system.A), closed))
     runs: list[LinearMotion | None] = [None, None]
     if revolutions:
         start = _start(machine, speed, disturbance)
@@ -197,6 +198,9 @@ def _start(machine: Machine, speed: float, disturbance: float) -> Array:
     return np.concatenate([shape.real, (value * shape).real[heavy]])
 
 
-def _sorted(values: Any) -> ComplexArray:
-    found: Any = np.asarray(values, dtype=complex)
-    return found[np.argsort(-found.real, kind="stable")]
+def _least_stable_first(matrix: Array) -> ComplexArray:
+    """Eigenvalues; a real part below its own accuracy is 0."""
+    found = all_eigenmodes(matrix, matrix.shape[0] // 2)
+    undamped = np.abs(found.values.real) <= found.accuracy
+    values: Any = np.where(undamped, 1j * found.values.imag, found.values)
+    return values[np.argsort(-values.real, kind="stable")]

@@ -11,6 +11,7 @@ import numpy as np
 from ..rows import RPM, ZERO_CELSIUS, number
 from .lateral import LateralStudy
 from .machine import MachineResult, destabilised_by_heating
+from .sensitivity import Sensitivity
 
 _SHOWN_SPEEDS = 12
 """Rows of the tables over speed, at most, where not all are wanted."""
@@ -164,6 +165,40 @@ def heating_lines(results: dict[str, MachineResult]) -> list[str]:
         f"{number(mode.growth_rate)} 1/s with it"
         for mode in destabilised_by_heating(cold, hot)
     ]
+
+
+def mesh_line(result: MachineResult) -> str:
+    """What twice as many elements change."""
+    changes = [change for _, change in result.mesh_change]
+    said = f"mesh: {len(result.machine.rotor.nodes)} nodes"
+    if not changes:
+        return said
+    return (
+        f"{said}; twice as many elements move the lowest {len(changes)} modes at "
+        f"{float(result.known[-1]) * RPM:.0f} rpm by {number(100.0 * max(changes), 2)} % at most"
+    )
+
+
+def moving_rows(moving: Sequence[Sensitivity]) -> Iterator[Rows]:
+    """What each parameter does to the threshold speed; none without."""
+    if not moving:
+        return
+    rows = [
+        (one.support, one.parameter.replace("_", " "), _change(one),
+         "-" if one.threshold_change is None else f"{one.threshold_change * RPM:+.0f}",
+         f"{one.growth_rate_change:+.3g}")
+        for one in moving
+    ]  # fmt: skip
+    head = ("bearing or place", "parameter", "changed by", "threshold rpm", "growth 1/s")
+    yield Rows("What moves the stability threshold", head, rows)
+
+
+def _change(one: Sensitivity) -> str:
+    if one.parameter == "supply_temperature":
+        return f"{one.change:+g} K"
+    if one.parameter == "destabilising_stiffness":
+        return f"{one.change / 1e6:+.3g} MN/m"
+    return f"{one.change:+g}" if one.parameter == "preload" else f"{one.change / one.value:+.0%}"
 
 
 def failure_lines(results: dict[str, MachineResult]) -> list[str]:

@@ -248,7 +248,7 @@ class Campbell:
                     "growth_rate": found.eigenvalues[:, k].real,
                     "damped_frequency": found.damped_frequency[:, k],
                     "damping_ratio": found.damping_ratio[:, k],
-                    "log_decrement": found.logarithmic_decrement[:, k],
+                    "logarithmic_decrement": found.logarithmic_decrement[:, k],
                     "whirl_direction": sense[:, k],
                     "whirl": [str(word) for word in whirl[:, k]],
                     "undamped": undamped[:, k],

@@ -85,7 +85,7 @@ def test_modes_over_speed_in_json(here, tmp_path):
         assert least["damped_frequency"][i] == pytest.approx(abs(value.imag), rel=1e-9)
         assert least["damping_ratio"][i] == pytest.approx(-value.real / abs(value), rel=1e-9)
         decrement = -2 * math.pi * value.real / abs(value.imag)
-        assert least["log_decrement"][i] == pytest.approx(decrement, rel=1e-9)
+        assert least["logarithmic_decrement"][i] == pytest.approx(decrement, rel=1e-9)
         assert least["whirl"][i] == "forward"
     for threshold in curve["thresholds"]:
         assert threshold["whirl_frequency_ratio"] == pytest.approx(

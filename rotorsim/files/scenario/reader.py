@@ -284,6 +284,10 @@ def _missing(entry: Entry, path: _Path) -> str:
     if entry.example is None:
         return f"is missing; the file needs a table [{'.'.join((*_names(path), entry.key))}]"
     example = entry.example
+    if isinstance(example, list) and isinstance(example[0], dict):
+        inside = ", ".join(f'{key} = "{text}"' for key, text in example[0].items())
+        name = ".".join((*_names(path), entry.key))
+        return f"is missing; write for example [[{name}]] with {inside}"
     value = f'"{example}"' if isinstance(example, str) else str(example)
     return f"is missing; write for example {entry.key} = {value}"
 

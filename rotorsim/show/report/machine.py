@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import datetime
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +19,7 @@ from . import html
 if TYPE_CHECKING:
     from ...study.lateral import LateralStudy
     from ...study.machine import MachineResult
+    from ...study.sensitivity import Sensitivity
 
 _CAPTIONS = {
     "rotor": "The rotor to scale: sections, discs, bearings, probes.",
@@ -29,6 +30,9 @@ _CAPTIONS = {
     "unbalance_response": "Response at the probes to the unbalances of the file.",
     "destabilising": "Logarithmic decrement over destabilising stiffness.",
 }
+_MOVING = html.paragraph(
+    "Each parameter changed alone, by the amount given and in proportion; static loads held."
+)
 _PLACES = {
     "rotor": "rotor", "campbell": "modes", "growth_rate": "verdict", "mode_shapes": "modes",
     "critical_speed_map": "critical", "unbalance_response": "response",
@@ -38,25 +42,27 @@ _PLACES = {
 
 def write_machine_report(
     results: dict[str, MachineResult], study: LateralStudy, path: str | Path,
-    when: datetime.datetime | None = None,
+    moving: Sequence[Sensitivity] = (), when: datetime.datetime | None = None,
 ) -> Path:  # fmt: skip
     """Write the report of a machine's results, whole or not at all.
 
     results : By thermal model; modes, response and checks are those of the last.
+    moving : Sensitivities of its threshold.
     """
     from .page import document
 
     last = results[next(reversed(results))]
     title = last.description.title
     target = Path(path)
-    parts = _parts(results, study, when)
+    parts = _parts(results, study, moving, when)
     write_text(target, document(title, "\n".join(part for part in parts if part)))
     return target
 
 
 def _parts(
-    results: dict[str, MachineResult], study: LateralStudy, when: datetime.datetime | None
-) -> Iterator[str]:
+    results: dict[str, MachineResult], study: LateralStudy, moving: Sequence[Sensitivity],
+    when: datetime.datetime | None,
+) -> Iterator[str]:  # fmt: skip
     last = results[next(reversed(results))]
     machine = last.description
     figures = _figures(results, study)
@@ -83,6 +89,8 @@ def _parts(
         "Sensitivity to destabilising stiffness (level I)",
         *(_table(one) for one in tables.sensitivity_rows(study)), *figures["sensitivity"],
     )  # fmt: skip
+    found = [_table(one) for one in tables.moving_rows(moving)]
+    yield html.section("What moves the stability threshold", *found, _MOVING if found else "")
     yield html.section("What was computed", html.listing(_statements(results, study)))
     yield '<div class="appendix">'
     least = [_table(one) for one in tables.least_stable_rows(results, every=True)]
@@ -101,12 +109,13 @@ def _parts(
 def _table(rows: tables.Rows) -> str:
     if not rows.rows:
         return ""
-    texts = 1 if rows.head[0] in ("check", "name") else 0
+    texts = {"check": 1, "name": 1, "bearing or place": 2}.get(rows.head[0], 0)
     return f'<div class="wide">{table_html(rows.head, rows.rows, rows.title, texts=texts)}</div>'
 
 
 def _sentence(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}."
+    first = "THD" if text.startswith("thd") else text[0].upper()
+    return f"{first}{text[len(first) :]}."
 
 
 def _origin(machine: object, when: datetime.datetime | None) -> str:
@@ -127,7 +136,8 @@ def _headline(results: dict[str, MachineResult]) -> str:
     for model, result in results.items():
         lost = [one for one in result.thresholds if one.becomes_unstable]
         if lost:
-            word = f"{model.capitalize()}: unstable" if len(results) > 1 else "Unstable"
+            name = "THD" if model == "thd" else model.capitalize()
+            word = f"{name}: unstable" if len(results) > 1 else "Unstable"
             said.append(
                 f"{word} from {lost[0].speed * RPM:.0f} rpm, whirling at "
                 f"{number(lost[0].whirl_frequency_ratio, 3)} of the speed."
@@ -266,6 +276,7 @@ def _statements(results: dict[str, MachineResult], study: LateralStudy) -> Itera
         f"Rotor: {len(rotor.nodes) - 1} beam elements with rotary inertia and gyroscopic moments; "
         f"{last.machine.size} unknowns, pads and housings included."
     )
+    yield _sentence(tables.mesh_line(last))
     for name, one in machine.bearings.items():
         mesh = one.film.mesh
         yield (
