@@ -311,15 +311,16 @@ def report(
 
     Example: rotorsim report scenarios/quick.toml -o quick.html
     """
-    from ..files.scenario import load_scenario
-    from ..show.report import write_report
-    from ..study.main_job import compute
     from .machine_commands import is_machine, report_machine
 
     page = file or Path("reports") / f"{scenario.stem}.html"
     check_file(page, ".html", scenario)
     if is_machine(scenario):
         return report_machine(output, scenario, page, workers)
+    from ..files.scenario import load_scenario
+    from ..show.report import write_report
+    from ..study.main_job import compute
+
     loaded = load_scenario(scenario)
     table = table_path(scenario, Path())
     points, coefficients = computed_table(output, loaded, table, workers, scheduler)

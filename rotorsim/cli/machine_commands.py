@@ -290,7 +290,7 @@ def analysed(
 
     models = models or thermal_models(loaded)
     total = len(models) * len(loaded.bearings) * len(loaded.operating.speeds)
-    output.note(f"{loaded.title}: {total} film points" if total else loaded.title)
+    output.note(loaded.title)
     with film_progress(output, total) as progress:
         return analyse_machine(loaded, models, workers=workers, progress=progress)
 

@@ -257,8 +257,8 @@ def _points_bar(output: Output, total: int) -> Iterator[Progress]:
     with Bar(*columns, console=output.errors, transient=False) as bar:
         task = bar.add_task("film points", total=total, last="")
 
-        def report(done: int, _total: int, point: OperatingPoint) -> None:
-            bar.update(task, completed=done, last=point_title(point))
+        def report(done: int, total: int, point: OperatingPoint) -> None:
+            bar.update(task, completed=done, total=total, last=point_title(point))
 
         yield report
         bar.update(task, last="")

@@ -15,7 +15,7 @@ from ..threads import on_one_blas_thread
 from .branches import Modes
 from .machine import Machine, Mount
 from .modes import machine_spectrum
-from .spectrum import Eigenmodes
+from .spectrum import Eigenmodes, MachineSpectrum
 from .support import cross_stiffness
 from .tracking import track_modes
 
@@ -65,11 +65,12 @@ class _OverStiffness:
     machine: Machine
     speed: float
     shares: Mapping[int, float]
+    count: int
 
     def __call__(self, parameter: float, /) -> Eigenmodes | None:
         shares = {node: share * parameter for node, share in self.shares.items()}
         machine = _destabilised(self.machine, shares)
-        return machine_spectrum(machine, np.array([self.speed]))(self.speed)
+        return MachineSpectrum(machine, self.count)(self.speed)
 
 
 @on_one_blas_thread
@@ -88,7 +89,9 @@ def decrement_curve(
         raise InputError(
             "must be above 0 (N/m)", key="lateral.destabilising_stiffness", value=total
         )
-    spectrum = _OverStiffness(machine, speed, {n: q / total for n, q in anticipated.items()})
+    shares = {node: q / total for node, q in anticipated.items()}
+    count = machine_spectrum(machine, np.array([speed])).count
+    spectrum = _OverStiffness(machine, speed, shares, count)
     threshold = _threshold(spectrum, total)
     reach = _REACH * total
     if threshold is not None:

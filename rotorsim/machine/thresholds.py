@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -145,7 +146,13 @@ def critical_speeds(
     One of each conjugate pair; modes so much damped (ratio above 0.707) that an unbalance response
     has no peak are left out. Crossings are refined to 1e-10 on the supports' interpolated tables.
     """
-    branches = (modes(machine) if found is None else found).oscillating()
+    return list(_crossings(machine, modes(machine) if found is None else found, order))
+
+
+@lru_cache(maxsize=2)
+def _crossings(machine: Machine, found: Modes, order: float) -> tuple[CriticalSpeed, ...]:
+    """Critical speeds; several analyses of the same modes ask for them."""
+    branches = found.oscillating()
     at = machine_spectrum(machine, branches.parameter)
     result = []
     offset = branches.damped_frequency - order * branches.parameter[:, None]
@@ -157,7 +164,7 @@ def critical_speeds(
             one = replace(crossing, planes=machine.rotor.planes)
             speed, ratio = float(one.parameter[0]), float(one.damping_ratio[0, 0])
             result.append(CriticalSpeed(speed, str(one.whirl[0, 0]), ratio, int(k)))
-    return sorted(result, key=lambda one: one.speed)
+    return tuple(sorted(result, key=lambda one: one.speed))
 
 
 def _refined_crossing(at: Spectrum, branches: Modes, i: int, k: int, order: float) -> Modes:

@@ -55,8 +55,8 @@ _MESH_MODES = 8
 """Modes whose change on twice the mesh is stated."""
 _RIGID = 1e-13
 """Of the largest squared frequency: below, a free shaft's motion without bending."""
-_SUBDIVISIONS = 4
-"""Of every interval of speeds, where thresholds are looked for."""
+_INTERVALS = 60
+"""Of speed, at least, at whose ends thresholds are looked for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,7 +120,7 @@ class MachineResult:
         """Speeds at which the verdict changes."""
         if self.known.size < 2:
             return []
-        grid = subdivided(self.known, _SUBDIVISIONS)
+        grid = subdivided(self.known, math.ceil(_INTERVALS / (self.known.size - 1)))
         return find_thresholds(machine_spectrum(self.machine, self.known), grid)
 
     @property
@@ -143,8 +143,7 @@ class MachineResult:
             for mount in self.machine.mounts
         ]
         top = float(self.known[-1])
-        here = self.modes.oscillating().eigenvalues[-1]
-        here = here[np.isfinite(here)]
+        here = modes(self.machine, top).oscillating().eigenvalues[0]
         finer = modes(Machine(fine, mounts), top).oscillating().eigenvalues[0]
         wanted = np.sort_complex(1j * here.imag)[:_MESH_MODES].imag
         found = []
@@ -274,7 +273,7 @@ def analyse_machine(
     for name in ordered:
         if name not in known:
             raise InputError(f"must be one of {', '.join(known)}", key="thermal_model", value=name)
-    rotor = description.rotor_with_unbalance()
+    rotor, speeds = description.rotor_with_unbalance(), list(description.operating.speeds)
     total = len(ordered) * len(description.bearings) * len(description.operating.speeds)
     done = 0
 
@@ -285,13 +284,35 @@ def analyse_machine(
             progress(done, total, point)
 
     def sweep(cases: list[Case], speeds: list[float]) -> list[OperatingPoint]:
+        nonlocal total
+        total = len(cases) * len(speeds)
         return sweep_points(cases, speeds, workers=workers, progress=counted)
 
-    speeds, variant = description.operating.speeds, Variant(description)
-    return {
-        name: MachineAnalysis(variant, rotor, name, speeds, sweep, counted).result()
-        for name in ordered
-    }
+    variant = Variant(description)
+    analyses = [MachineAnalysis(variant, rotor, name, speeds, sweep, counted) for name in ordered]
+    solve_films_together(analyses, speeds, sweep)
+    return {one.model: one.result() for one in analyses}
+
+
+_Sweep = Callable[[list[Case], list[float]], list[OperatingPoint]]
+
+
+def solve_films_together(
+    analyses: Sequence[MachineAnalysis], speeds: list[float], sweep: _Sweep
+) -> bool:
+    """Solve the films of several analyses at once, equal ones once, and give them their points.
+
+    False: the films of one depend on the speed's load or on each other; nothing was done.
+    """
+    wanted = [one.film_cases() for one in analyses]
+    if any(cases is None for cases in wanted):
+        return False
+    every = list(dict.fromkeys(case for cases in wanted for case in cases or ()))
+    found = sweep(every, speeds)
+    points = {case: found[k * len(speeds) : (k + 1) * len(speeds)] for k, case in enumerate(every)}
+    for one in analyses:
+        one.sweep = lambda cases, _speeds: [point for case in cases for point in points[case]]
+    return True
 
 
 def thermal_models(description: MachineFile) -> list[str]:
@@ -319,7 +340,7 @@ class MachineAnalysis:
 
     def __init__(
         self, variant: Variant, rotor: Rotor, model: str, speeds: Sequence[float],
-        sweep: Callable[[list[Case], list[float]], list[OperatingPoint]],
+        sweep: _Sweep,
         progress: Progress = lambda *_: None,
     ) -> None:  # fmt: skip
         self.variant, self.rotor, self.model = variant, rotor, model
@@ -517,13 +538,11 @@ class MachineAnalysis:
         changes = dict(self.variant.films.get(name, {}))
         changes.pop("applied_load", None)
         case = changed(case, changes)
+        # Loads that differ by rounding alone are those of one film.
         turn = scenario.housing_turn + self.description.support[i].angle
-        direction = math.atan2(load[1], load[0])
-        return replace(
-            case,
-            bearing=case.bearing.turned(turn - direction),
-            target=LoadTarget(float(np.hypot(*load))),
-        )
+        turn = round(turn - math.atan2(load[1], load[0]), 10)
+        size = float(f"{np.hypot(*load):.10g}")
+        return replace(case, bearing=case.bearing.turned(turn), target=LoadTarget(size))
 
     def _spring(self, i: int, speed: float) -> Law:
         """Law of a support that is no film: a spring at the static load."""

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,14 @@ from ..model import Case, MeshSize
 from ..model.machine import MapEntry
 from ..rotor import Rotor
 from ..threads import on_one_blas_thread
-from .machine import MachineAnalysis, MachineResult, SupportState, film_support, thermal_models
+from .machine import (
+    MachineAnalysis,
+    MachineResult,
+    SupportState,
+    film_support,
+    solve_films_together,
+    thermal_models,
+)
 from .planes import Plane, solved_speeds, with_mesh
 from .sweep import Progress, available_cores, map_on_processes, sweep_points
 
@@ -153,15 +161,11 @@ def _solve_variants(
     analyses = [
         MachineAnalysis(one, rotors(one.machine), model, speeds, _no_sweep) for one in variants
     ]
-    per_variant = [one.film_cases() for one in analyses]
-    if any(cases is None for cases in per_variant):
-        return map_on_processes(_SolvedVariant(model, tuple(speeds), rotors), variants, workers)
-    every = list(dict.fromkeys(case for cases in per_variant for case in cases or ()))
     wanted = [float(speed) for speed in speeds]
-    found = sweep_points(every, wanted, workers=workers, progress=progress)
-    points = {case: found[k * len(wanted) : (k + 1) * len(wanted)] for k, case in enumerate(every)}
-    for one in analyses:
-        one.sweep = lambda cases, _speeds: [point for case in cases for point in points[case]]
+    if not solve_films_together(
+        analyses, wanted, partial(sweep_points, workers=workers, progress=progress)
+    ):
+        return map_on_processes(_SolvedVariant(model, tuple(speeds), rotors), variants, workers)
     return [one.result() for one in analyses]
 
 

@@ -7,12 +7,16 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..machine.branches import Modes
 from ..rows import RPM, ZERO_CELSIUS, number
 from .lateral import LateralStudy
 from .machine import MachineResult, destabilised_by_heating
 from .sensitivity import Sensitivity
 
+_REACH = 3.0
+"""Multiple of the highest speed up to which the least stable mode is shown."""
 _SHOWN_SPEEDS = 12
 """Rows of the tables over speed, at most, where not all are wanted."""
 
@@ -36,7 +40,7 @@ def least_stable_rows(results: dict[str, MachineResult], every: bool = False) ->
         found = result.modes
         if found is None:
             continue
-        least, whirl, verdicts = found.least_stable, found.whirl, found.verdicts
+        least, whirl, verdicts = least_stable_below(found), found.whirl, found.verdicts
         rows = []
         for i in _some(len(result.known), every):
             k, speed = int(least[i]), float(result.known[i])
@@ -46,7 +50,20 @@ def least_stable_rows(results: dict[str, MachineResult], every: bool = False) ->
                 number(frequency / speed, 3), number(float(found.logarithmic_decrement[i, k]), 3),
                 number(float(found.growth_rate[i, k])), str(whirl[i, k]), str(verdicts[i]),
             ))  # fmt: skip
-        yield Rows(f"Least stable mode{_suffix(results, model)}", head, rows)
+        reach = f" up to {number(_REACH * float(result.known[-1]) / (2.0 * math.pi), 3)} Hz"
+        yield Rows(f"Least stable mode{reach}{_suffix(results, model)}", head, rows)
+
+
+def least_stable_below(found: Modes) -> NDArray[np.intp]:
+    """Branch of largest growth rate up to three times the highest speed, or unstable, (n,).
+
+    Bending modes far above the speeds are hardly damped and hide those that films decide.
+    """
+    high = found.damped_frequency > _REACH * float(found.parameter[-1])
+    left_out = found.undamped | (high & (found.growth_rate <= 0.0))
+    left_out &= ~left_out.all(axis=1, keepdims=True)
+    growth = np.where(left_out, -np.inf, found.growth_rate)
+    return np.nan_to_num(growth, nan=-np.inf).argmax(axis=1)
 
 
 def critical_rows(results: dict[str, MachineResult]) -> Iterator[Rows]:

@@ -162,7 +162,10 @@ def _of_films(result: MachineResult, mode: _Mode, workers: int | None) -> list[S
         size = float(np.hypot(*load))
         jobs.append((i, "load", size, _SHARE * size))
         cases += [case({}, 1.0 + s * _STEP * _SHARE) for s in (-1.0, 1.0)]
-    points = sweep_points(cases, [mode.speed], workers=workers) if cases else []
+    distinct = list(dict.fromkeys(cases))
+    found_points = sweep_points(distinct, [mode.speed], workers=workers)
+    solved = dict(zip(distinct, found_points, strict=True))
+    points = [solved[one] for one in cases]
     found = []
     for k, (i, parameter, value, change) in enumerate(jobs):
         pair = points[2 * k : 2 * k + 2]

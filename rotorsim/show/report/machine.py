@@ -257,11 +257,11 @@ def _comparison(results: dict[str, MachineResult]) -> str:
         found = result.modes
         if found is None:
             continue
-        k = int(found.least_stable[-1])
+        k = int(tables.least_stable_below(found)[-1])
         lost = [f"{one.speed * RPM:.0f}" for one in result.thresholds]
         rows.append((
             model, str(result.verdict), ", ".join(lost) or "none",
-            number(float(found.largest_growth_rate[-1])),
+            number(float(found.growth_rate[-1, k])),
             number(float(found.logarithmic_decrement[-1, k]), 3),
             number(float(found.damped_frequency[-1, k]) / (2.0 * math.pi)),
         ))  # fmt: skip
