@@ -212,9 +212,11 @@ def pinned_mesh_change(description: MachineFile) -> float:
     for refinement in (1, 2):
         rotor = description.rotor_with_unbalance(refinement)
         held = [k for one in description.support for k in rotor.planes[node_at(rotor, one.at)]]
-        free = np.setdiff1d(np.arange(rotor.size), held)
-        places = np.ix_(free, free)
-        squares = eigh(rotor.stiffness[places], rotor.mass[places], eigvals_only=True)
+        parts = (
+            np.delete(np.delete(matrix, held, axis=0), held, axis=1)
+            for matrix in (rotor.stiffness, rotor.mass)
+        )
+        squares: Any = eigh(*parts, eigvals_only=True)
         elastic = squares[squares > _RIGID * squares[-1]]
         lowest.append(np.sqrt(elastic[:_MESH_MODES]))
     count = min(map(len, lowest))

@@ -82,7 +82,7 @@ def test_grade_and_amount_of_unbalance():
     [
         (SHAFT + SPRINGS.replace('"1 m"', '"1.2 m"'), "support[1].at"),
         (SHAFT + SPRINGS.replace('at = "1 m"', 'at = "0 mm"'), "support[1].at"),
-        (SHAFT.replace('at = "0.5 m"\nmass', 'at = "1.5 m"\nmass') + SPRINGS, "rotor.disc.at"),
+        (SHAFT.replace('at = "0.5 m"\nmass', 'at = "1.5 m"\nmass') + SPRINGS, "rotor.disc[0].at"),
         (SHAFT.replace('"0.4 kg*m^2"', '"-0.4 kg*m^2"') + SPRINGS, "rotor.disc[0].polar_inertia"),
         (SHAFT + '[[support]]\nat = "0 mm"\nbearing = "none.toml"\n', "support[0].bearing"),
         (SHAFT + '[[support]]\nat = "0 mm"\n', "support[0].bearing"),
