@@ -4,7 +4,7 @@ ROSS is not a dependency: give the Python of an environment that has it,
 
     python benchmarks/against_ross.py --ross PATH_TO_ITS_PYTHON
 
-Two 18 degree grooves at the split, R = 50 mm, L = 80 mm, c = 100 um, the oil of Dal's Table 1,
+Two 18 degree grooves at the split, R = 50 mm, L = 80 mm, c = 100 µm, the oil of Dal's Table 1,
 10 kN, 5000 rpm; 80 x 30 cells on each arc, 20 across the film and 20 through the bush. ROSS solves
 a two-dimensional energy equation (averaged across the film for adiabatic walls), this program a
 three-dimensional one, so the temperatures differ by what that averaging does; its laminar setting

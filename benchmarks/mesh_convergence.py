@@ -2,7 +2,7 @@
 
     python benchmarks/mesh_convergence.py [--plot FILE.png]
 
-Two cases: Dal's bearing (c = 100 um, 15 000 rpm, eccentricity ratio 0.5, walls at ambient), and a
+Two cases: Dal's bearing (c = 100 µm, 15 000 rpm, eccentricity ratio 0.5, walls at ambient), and a
 two-groove bearing under 10 kN with bush conduction and mixing grooves. Every mesh is the default
 one, 156 x 48 x 24, times a factor in all directions. The errors are against the extrapolation of
 the two finest meshes with second order.
@@ -98,7 +98,7 @@ def main() -> None:
     parser.add_argument("--plot", type=Path)
     options = parser.parse_args()
     curves = {}
-    for name, build in (("Dal, c = 100 um, 15 000 rpm", dal), ("two grooves, 10 kN", two_groove)):
+    for name, build in (("Dal, c = 100 µm, 15 000 rpm", dal), ("two grooves, 10 kN", two_groove)):
         found = [results(*build(factor)) for factor in FACTORS]
         fine, finest = FACTORS[-2], FACTORS[-1]
         weight = finest**2 / (finest**2 - fine**2)

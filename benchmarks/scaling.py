@@ -2,7 +2,7 @@
 
     python benchmarks/scaling.py [--plot FILE.png] [--finest 8]
 
-Cold starts at Dal's case (c = 100 um, 15 000 rpm), meshes from 24 x 78 x 12 up by factors of two in
+Cold starts at Dal's case (c = 100 µm, 15 000 rpm), meshes from 24 x 78 x 12 up by factors of two in
 every direction. Prints iterations, seconds, the exponent of time against unknowns between meshes
 and overall, and for the pressure solve, the energy march and the bush solve how many times the time
 of one pass (read and write) over the arrays that they touch each takes.

@@ -27,17 +27,17 @@ from .study import (
 )
 
 CAPTIONS = {
-    "fig2": "Fig. 2: peak pressure and temperature against eccentricity ratio, c = 145 um. The "
+    "fig2": "Fig. 2: peak pressure and temperature against eccentricity ratio, c = 145 µm. The "
     "paper states no speed; two are drawn, with both kinds of wall.",
     "fig3": "Fig. 3: mid-plane pressure and temperature (hottest layer) from maximum film "
-    "thickness in the direction of rotation, c = 100 um; viscosity.",
+    "thickness in the direction of rotation, c = 100 µm; viscosity.",
     "fig4": "Fig. 4: peak pressure and temperature.",
     "fig5": "Fig. 5: film force, friction (whole: over the whole ruptured sector; otherwise over "
     "its oil) and power loss.",
     "fig6": "Fig. 6: stiffness in the load frame.",
     "fig7": "Fig. 7: damping in the load frame.",
     "fig8": "Fig. 8: critical mass, dimensionless and in kilograms, and whirl frequency ratio.",
-    "walls": "Both readings of the walls, c = 100 um.",
+    "walls": "Both readings of the walls, c = 100 µm.",
 }
 NAMES = {ISOTHERMAL: "isothermal", THD: "THD"}
 SPEED = "shaft speed [rpm]"
@@ -115,7 +115,7 @@ def _over_speed(ax: Axes, r: Results, name: str, title: str, y: str, scale: floa
         thd = model == THD
         for place, clearance in enumerate(CLEARANCES):
             curve = r.curves[name].sel(setting=AMBIENT, thermal_model=model, clearance=clearance)
-            label = f"{NAMES[model]}, c = {clearance} um"
+            label = f"{NAMES[model]}, c = {clearance} µm"
             _plot(ax, curve.rpm, scale * curve, label, int(thd), int(not thd), place,
                   1.0 - 0.25 * place)  # fmt: skip
     _finish(ax, title, SPEED, y, 5000.0)
@@ -175,7 +175,7 @@ def _figure_5(r: Results) -> bytes:
     _printed(axes[0], (15000.0, 30.0), (15000.0, 20.0))
     for model in (ISOTHERMAL, THD):
         curve = r.curves["friction_force"].sel(setting=WHOLE, thermal_model=model, clearance=100)
-        label = f"{NAMES[model]}, c = 100 um, whole sector"
+        label = f"{NAMES[model]}, c = 100 µm, whole sector"
         _plot(axes[1], curve.rpm, curve, label, int(model == THD), 2)
     _over_speed(axes[1], r, "friction_force", "b) friction", "friction [N]")
     _printed(axes[1], (15000.0, 640.0), (15000.0, 640.0 * 0.55))

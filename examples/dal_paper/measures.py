@@ -103,7 +103,7 @@ def reduction(
 
 
 def growth(r: Results, name: str, model: str, since: int) -> float:
-    """Return the ratio of the values at the top speed and at `since` rpm, c = 100 um."""
+    """Return the ratio of the values at the top speed and at `since` rpm, c = 100 µm."""
     return r.value(name, model) / r.value(name, model, rpm=since)
 
 
@@ -122,7 +122,7 @@ def friction_coefficient(r: Results, part: float) -> float:
 
 
 def widening(r: Results, name: str, model: str, friction: str) -> float:
-    """Return by how much a quantity falls from 100 to 150 um at the top speed [%]."""
+    """Return by how much a quantity falls from 100 to 150 µm at the top speed [%]."""
     narrow, wide = (r.value(name, model, c, friction=friction) for c in (100, 150))
     return _fall(narrow, wide)
 
@@ -137,7 +137,7 @@ def largest_reduction(r: Results, *names: str) -> Evidence:
     """Return the largest reduction by heating over coefficients and clearances [%]."""
     found = _reductions(r, names)
     name, clearance = np.unravel_index(np.argmax(found), found.shape)
-    return Evidence(float(found.max()), f"it is {names[name]} at {CLEARANCES[clearance]} um")
+    return Evidence(float(found.max()), f"it is {names[name]} at {CLEARANCES[clearance]} µm")
 
 
 def mesh_change(r: Results) -> float:
@@ -199,7 +199,7 @@ def _distance_from_line(values: _Array) -> _Array:
 
 
 def bend(r: Results, *names: str, model: str) -> float:
-    """Return the largest distance from a straight line at 100 um [% of the range]."""
+    """Return the largest distance from a straight line at 100 µm [% of the range]."""
     return float(_distance_from_line(_curves(r, names, (model,))[:, :, 0]).max())
 
 
@@ -228,7 +228,7 @@ def spread_over_clearance(r: Results, name: str, model: str, below: float) -> fl
 
 
 def largest_at_top_speed(r: Results, name: str) -> Evidence:
-    """Return whether a quantity is largest at the top speed and 100 um."""
+    """Return whether a quantity is largest at the top speed and 100 µm."""
     found = _curves(r, (name,))[0]
     return _share(found.max(axis=(1, 2)) == found[:, 0, -1], "thermal models")
 
@@ -261,7 +261,7 @@ def rises_with_clearance(
 
 def _temperatures(r: Results) -> tuple[_Array, str]:
     found = _over_clearances(r, "temperature", THD)
-    return found, ", ".join(f"{t:.0f}" for t in found) + " degC at 100, 125, 150 um"
+    return found, ", ".join(f"{t:.0f}" for t in found) + " degC at 100, 125, 150 µm"
 
 
 def cooler_with_clearance(r: Results) -> Evidence:
@@ -303,7 +303,7 @@ def effect_falls_with_clearance(r: Results, *names: str) -> Evidence:
     found = _reductions(r, names)
     means = ", ".join(f"{mean:.1f}" for mean in found.mean(axis=0))
     average = " on average" if len(names) > 1 else ""
-    more = f"reductions {means} % at 100, 125, 150 um{average}"
+    more = f"reductions {means} % at 100, 125, 150 µm{average}"
     return _share(np.diff(found, axis=1) < 0.0, "steps of clearance", more)
 
 
@@ -333,7 +333,7 @@ def least_reduced(r: Results, wanted: str, *names: str) -> Evidence:
 
 
 def cross_damping_most_reduced(r: Results) -> Evidence:
-    """Return whether heating lowers each cross damping more than each direct one, 100 um."""
+    """Return whether heating lowers each cross damping more than each direct one, 100 µm."""
     fall: dict[str, float] = dict(zip(DAMPING, _reductions(r, DAMPING)[:, 0], strict=True))
     pairs = [(cross, direct) for cross in ("cxy", "cyx") for direct in ("cxx", "cyy")]
     more = ", ".join(f"{name} {x:.1f} %" for name, x in fall.items())
@@ -352,7 +352,7 @@ def window_of_mass(r: Results) -> Evidence:
     """Return whether some rotor is stable without heating and unstable with it, top speed."""
     low, high = (_over_clearances(r, "critical_mass", model) for model in (THD, ISOTHERMAL))
     text = ", ".join(f"{a:.0f} to {b:.0f} kg" for a, b in zip(low, high, strict=True))
-    more = f"at 15 000 rpm rotors of {text} per bearing (100, 125, 150 um)"
+    more = f"at 15 000 rpm rotors of {text} per bearing (100, 125, 150 µm)"
     return _share(low < high, "clearances", more)
 
 
@@ -419,5 +419,5 @@ def peak_difference_grows(r: Results) -> Evidence:
 
 
 def highest_mean_temperature(r: Results) -> float:
-    """Return the highest mean across the film at mid-plane, 100 um, top speed [degC]."""
+    """Return the highest mean across the film at mid-plane, 100 µm, top speed [degC]."""
     return float(r.profile(THD, TOP_SPEED)[2].max())

@@ -297,7 +297,7 @@ def _wall_table(rows: Sequence[Mapping[str, Any]]) -> str:
     )  # fmt: skip
     lines = [
         (
-            f"{row['clearance']} um", row["label"], f"{row['temperature']:.0f}",
+            f"{row['clearance']} µm", row["label"], f"{row['temperature']:.0f}",
             f"{row['load']:.1f}", f"{row['load_reduction']:.0f}",
             f"{row['friction_reduction']:.0f}", f"{row['pressure_reduction']:.0f}",
             shown(row["critical_mass"]), f"{row['critical_mass_reduction']:.0f}",
@@ -375,7 +375,7 @@ def _sensitivity_table(rows: Sequence[Mapping[str, Any]]) -> str:
         status = cells[0]["status"]
         ended = "" if status == "converged" else f" ({status})"
         lines.append([cells[0]["label"] + ended, *map(_moved, cells)])
-    columns = ["c = 100 um, 15 000 rpm", *(f"{line.label} [{line.unit}]" for line in HEADLINES)]
+    columns = ["c = 100 µm, 15 000 rpm", *(f"{line.label} [{line.unit}]" for line in HEADLINES)]
     return table(columns, lines)
 
 

@@ -19,7 +19,7 @@ import rotorsim as rs
 
 ISOTHERMAL, THD = "isothermal", "thd"
 CLEARANCES = (100, 125, 150)
-"""Radial clearances of section 4 [um]."""
+"""Radial clearances of section 4 [µm]."""
 SPEEDS = tuple(range(500, 15001, 500))
 """[rpm]"""
 TOP_SPEED = 15000
@@ -143,7 +143,7 @@ class Job:
         What tells the job apart within its group.
     model : str
     clearance : int
-        [um]
+        [µm]
     speeds : sequence of int
         [rpm]
     changes : mapping
@@ -220,11 +220,11 @@ class Results:
         Cell counts.
     curves : xarray.Dataset
         `QUANTITIES` and ``status`` over setting (the `WALLS`, and `WHOLE`), thermal_model,
-        clearance [um] and rpm; NaN where a setting was not computed.
+        clearance [µm] and rpm; NaN where a setting was not computed.
     validation : xarray.Dataset
         Fig. 2: over walls, eccentricity and rpm.
     variants : xarray.Dataset
-        Over variant and thermal_model, at 100 um and the top speed.
+        Over variant and thermal_model, at 100 µm and the top speed.
     films : dict
         ``(thermal model, walls, clearance, rpm)`` to the operating point with its fields.
     walls : str
@@ -271,7 +271,7 @@ class Results:
         return reduction(cold, warm)
 
     def profile(self, model: str, rpm: int) -> tuple[np.ndarray, ...]:
-        """Return mid-plane profiles of the film at c = 100 um over the paper's angle.
+        """Return mid-plane profiles of the film at c = 100 µm over the paper's angle.
 
         Returns
         -------

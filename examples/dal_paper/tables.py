@@ -103,7 +103,7 @@ class AxesScore:
     ----------
     axes : Axes
     statements : dict
-        Each qualitative statement and whether it holds (c = 100 um, 15 000 rpm).
+        Each qualitative statement and whether it holds (c = 100 µm, 15 000 rpm).
     table_2, table_3 : float
         Root mean square distance from the tables' twelve cells [points].
     """
@@ -210,7 +210,7 @@ WALL_CLAIMS = (
 def wall_rows(r: Results) -> list[dict[str, Any]]:
     """Return one row for each clearance and thermal condition of the walls, 15 000 rpm.
 
-    Clearance in um, temperature in degC, load in kN, critical mass in kg, reductions in percent,
+    Clearance in µm, temperature in degC, load in kN, critical mass in kg, reductions in percent,
     friction power and heat in kW.
     """
     rows = []
@@ -266,7 +266,7 @@ def bush_cooling_area() -> float:
 
 @dataclass(frozen=True)
 class Headline:
-    """A headline number at c = 100 um and 15 000 rpm.
+    """A headline number at c = 100 µm and 15 000 rpm.
 
     Attributes
     ----------

@@ -31,7 +31,13 @@ from ..film.solution import FilmSolution
 from ..model import Bearing, PadInertia, pad_inertia
 from ..status import Stability
 from .operating_point import FrequencyCoefficients, FullCoefficients, condensed
-from .whirl import FrequencyScan, WhirlThreshold, rigid_threshold, routh_coefficients
+from .whirl import (
+    FrequencyScan,
+    WhirlThreshold,
+    rigid_threshold,
+    routh_coefficients,
+    threshold_misfit,
+)
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -190,21 +196,11 @@ class FilmDynamics:
         frequency = (ratios * self.speed)[:, None, None]
         law = self.stiffness + 1j * frequency * self.damping - frequency**2 * self.mass
         reduced = condensed(law, self.coupled)
-        return _misfit(reduced.real, reduced.imag / frequency, frequency[:, 0, 0])
+        return threshold_misfit(reduced.real, reduced.imag / frequency, frequency[:, 0, 0])
 
     def _threshold_misfit(self, ratio: float) -> float:
         """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold."""
-        return float(_misfit(*self.coefficients(ratio), np.asarray(ratio * self.speed)))
-
-
-def _misfit(stiffness: Array, damping: Array, frequency: Array) -> Array:
-    routh = routh_coefficients(stiffness, damping)
-    squeezed = frequency**2 * routh.det_damping
-    size = np.abs(routh.det_stiffness) + np.abs(squeezed)
-    # Without stiffness and damping across there is nothing to lose its balance.
-    return np.where(
-        size > 0.0, (routh.det_shifted - squeezed) / np.where(size > 0.0, size, 1.0), 0.0
-    )
+        return float(threshold_misfit(*self.coefficients(ratio), np.asarray(ratio * self.speed)))
 
 
 def film_dynamics(

@@ -328,8 +328,17 @@ class FrequencyScan:
 
 
 def _misfit(film: ComplexArray, frequency: Array | float) -> Array:
-    """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold."""
     nu = np.asarray(frequency)
-    routh = routh_coefficients(film.real, film.imag / nu[..., None, None])
-    squeezed = nu**2 * routh.det_damping
-    return (routh.det_shifted - squeezed) / (np.abs(routh.det_stiffness) + np.abs(squeezed))
+    return threshold_misfit(film.real, film.imag / nu[..., None, None], nu)
+
+
+def threshold_misfit(stiffness: Array, damping: Array, frequency: Array) -> Array:
+    """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold.
+
+    Zero as well without stiffness and damping across: there is nothing to lose its balance.
+    """
+    routh = routh_coefficients(stiffness, damping)
+    squeezed = frequency**2 * routh.det_damping
+    size = np.abs(routh.det_stiffness) + np.abs(squeezed)
+    off = np.where(size > 0.0, routh.det_shifted - squeezed, 0.0)
+    return off / np.where(size > 0.0, size, 1.0)

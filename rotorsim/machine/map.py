@@ -14,14 +14,19 @@ from ..bearing.table import CoefficientTable
 from ..bearing.whirl import rigid_thresholds, routh_coefficients
 from ..errors import InputError
 from ..rows import result_html, table_html
+from .matrices import state_matrix
 from .rates import growth_rate_map
+from .spectrum import all_eigenmodes
 from .support import MatrixTable
 
 if TYPE_CHECKING:
     import xarray as xr
 
-UNKNOWN, UNSTABLE, STABLE = -1, 0, 1
+UNKNOWN, UNSTABLE, STABLE, UNDAMPED = -1, 0, 1, 2
 """Values of a map's ``verdict``; unknown where the table has no converged coefficients."""
+_VERDICTS = {"stable": STABLE, "unstable": UNSTABLE, "undamped": UNDAMPED, "unknown": UNKNOWN}
+_DOUBTFUL = 1e-6
+"""Growth rate over the fastest motion's that may be a rounding error (of a double eigenvalue)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +36,8 @@ class StabilityMap:
     Between tilting pads, of rotor and pads together.
 
     dataset : xarray.Dataset. Over the table's dimensions and ``mass``: ``growth_rate`` [1/s]
-        (largest real part of the eigenvalues), ``verdict`` (1 stable, 0 unstable, -1 unknown),
+        (largest real part of the eigenvalues, without those below their own accuracy),
+        ``verdict`` (1 stable, 0 unstable, 2 undamped, -1 unknown),
         ``mass_margin`` (1 - mass over critical mass, NaN without a threshold). Without ``mass``:
         ``critical_mass`` [kg], ``whirl_frequency_ratio``, ``stability``. Without ``thermal_model``,
         where the table has both models: ``destabilised_by_heating``, stable isothermally and
@@ -77,9 +83,9 @@ class StabilityMap:
         rows = []
         for model in verdict["thermal_model"].values:
             part = verdict.sel(thermal_model=model).values
-            shares = (100.0 * float(np.mean(part == code)) for code in (STABLE, UNSTABLE, UNKNOWN))
+            shares = (100.0 * float(np.mean(part == code)) for code in _VERDICTS.values())
             rows.append([str(model), *(f"{share:.1f} %" for share in shares)])
-        head = ("model", "stable", "unstable", "unknown")
+        head = ("model", *_VERDICTS)
         return result_html("Stability map", f"<p>{sizes}</p>", table_html(head, rows))
 
     def save(self, path: str | Path) -> Path:
@@ -171,10 +177,15 @@ def _dataset(
     clearance = clearance.reshape([-1 if i == axis else 1 for i in range(len(dims))])
     found = rigid_thresholds(stiffness, damping, speeds, load=load, radial_clearance=clearance)
     stable = routh_coefficients(stiffness[..., None, :, :], damping[..., None, :, :]).stable(masses)
+    rates, by_sign = _driven_rates(stiffness, damping, masses)
+    verdict = np.where(by_sign, _sign_verdict(rates), stable)
     known = np.asarray(np.isfinite(stiffness).all(axis=(-2, -1)))[..., None]
     with np.errstate(invalid="ignore"):
         margin = 1.0 - masses / found.critical_mass[..., None]
-    flags = {"flag_values": np.array([-1, 0, 1], dtype=np.int8)}
+    flags = {
+        "flag_values": np.array([-1, 0, 1, 2], dtype=np.int8),
+        "flag_meanings": "unknown unstable stable undamped",
+    }
     over_mass = (*dims, "mass")
     per_point = {
         "critical_mass": (found.critical_mass, "kg", "critical mass per bearing"),
@@ -192,13 +203,13 @@ def _dataset(
     }
     data["growth_rate"] = (
         over_mass,
-        growth_rate_map(stiffness, damping, masses),
+        rates,
         {"units": "s-1", "long_name": "largest real part of the eigenvalues"},
     )
     data["verdict"] = (
         over_mass,
-        np.where(known, stable, UNKNOWN).astype(np.int8),
-        {"units": "1", "long_name": "verdict", **flags, "flag_meanings": "unknown unstable stable"},
+        np.where(known, verdict, UNKNOWN).astype(np.int8),
+        {"units": "1", "long_name": "verdict", **flags},
     )
     data["mass_margin"] = (
         over_mass,
@@ -211,6 +222,32 @@ def _dataset(
     coords["speed"] = xr.Variable("speed", speeds, {"units": "rad s-1", "long_name": "shaft speed"})
     coords["mass"] = xr.Variable("mass", masses, {"units": "kg", "long_name": "mass per bearing"})
     return xr.Dataset(data, coords, dict(table.dataset.attrs))
+
+
+def _driven_rates(
+    stiffness: NDArray[np.float64], damping: NDArray[np.float64], masses: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+    """Growth rates (..., n_mass) without modes below their own accuracy, and where there are such.
+
+    As `Eigenmodes.leading` has it: 0 where no mode is damped or driven.
+    """
+    rates = growth_rate_map(stiffness, damping, masses)
+    size_k, size_c = (
+        np.linalg.norm(part, axis=(-2, -1))[..., None] for part in (stiffness, damping)
+    )
+    fastest = np.sqrt(size_k / masses) + size_c / masses
+    undamped = np.zeros(rates.shape, dtype=bool)
+    for index in zip(*np.nonzero(np.abs(rates) <= _DOUBTFUL * fastest), strict=True):
+        k, c = stiffness[index[:-1]], damping[index[:-1]]
+        found = all_eigenmodes(state_matrix(k, c, masses[index[-1]]), 2)
+        undamped[index] = np.any(np.abs(found.values.real) <= found.accuracy)
+        if undamped[index]:
+            rates[index] = found.leading.real
+    return rates, undamped
+
+
+def _sign_verdict(rates: NDArray[np.float64]) -> NDArray[np.int_]:
+    return np.select([rates < 0.0, rates > 0.0], [STABLE, UNSTABLE], UNDAMPED)
 
 
 def _put_full(
@@ -247,5 +284,5 @@ def _put_full(
             values["stability"][at] = str(found.stability)
             rates = rigid_growth_rates(film, masses)
             values["growth_rate"][at] = rates
-            values["verdict"][at] = np.where(rates < 0.0, STABLE, UNSTABLE)
+            values["verdict"][at] = _sign_verdict(rates)
             values["mass_margin"][at] = 1.0 - masses / values["critical_mass"][at]

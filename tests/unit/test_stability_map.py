@@ -4,9 +4,16 @@ import numpy as np
 import pytest
 
 from rotorsim.bearing.table import CoefficientTable
-from rotorsim.bearing.whirl import rigid_threshold
+from rotorsim.bearing.whirl import rigid_threshold, threshold_misfit
 from rotorsim.errors import InputError, OutOfRangeError, TableError
-from rotorsim.machine.map import STABLE, UNKNOWN, UNSTABLE, StabilityMap, stability_map
+from rotorsim.machine.map import (
+    STABLE,
+    UNDAMPED,
+    UNKNOWN,
+    UNSTABLE,
+    StabilityMap,
+    stability_map,
+)
 from rotorsim.machine.matrices import state_matrix
 
 SPEEDS = np.array([100.0, 300.0, 500.0, 900.0])
@@ -123,3 +130,34 @@ def test_a_file_with_the_old_sign_is_refused_and_the_new_name_given(table, tmp_p
     with pytest.raises(TableError, match="now growth_rate, positive when unstable") as found:
         CoefficientTable.load(path)
     assert found.value.key == "decay_rate"
+
+
+def test_what_nothing_damps_is_undamped_and_decides_no_verdict(tmp_path):
+    """Springs alone; springs damped along x only; a cross stiffness that drives."""
+    names = [*(f"k{i} [N/m]" for i in ("xx", "xy", "yx", "yy")),
+             *(f"c{i} [N s/m]" for i in ("xx", "xy", "yx", "yy"))]  # fmt: skip
+    springs, damped_x, driven = (
+        [3e7, 0, 0, 7e6, 0, 0, 0, 0],
+        [3e7, 0, 0, 7e6, 2e4, 0, 0, 0],
+        [3e7, 1e6, -1e6, 3e7, 0, 0, 0, 0],
+    )
+    found = []
+    for row in (springs, damped_x, driven):
+        path = tmp_path / "t.csv"
+        lines = [",".join(map(str, [speed, *row])) for speed in (100.0, 300.0)]
+        path.write_text("\n".join([",".join(["speed [rad/s]", *names]), *lines]))
+        map_ = stability_map(CoefficientTable.from_csv(path), [30.0, 100.0, 700.0])
+        assert "undamped" in map_._repr_html_()
+        found.append(map_.dataset)
+    assert (found[0]["verdict"] == UNDAMPED).all()
+    assert (found[0]["growth_rate"] == 0.0).all()
+    assert (found[1]["verdict"] == STABLE).all()
+    assert found[1]["growth_rate"].values[..., 0] == pytest.approx(-2e4 / 60.0)
+    assert (found[2]["verdict"] == UNSTABLE).all()
+    assert found[2]["verdict"].attrs["flag_meanings"].split()[-1] == "undamped"
+
+
+def test_a_film_without_stiffness_and_damping_is_at_no_threshold():
+    k = np.array([np.zeros((2, 2)), [[1.0, 2.0], [-2.0, 1.0]]])
+    off = threshold_misfit(k, np.array([np.zeros((2, 2)), np.eye(2)]), np.array([1.0, 2.0]))
+    assert off.tolist() == [0.0, 0.0]

@@ -39,6 +39,7 @@ _REGIONS = (
     _Region("unstable", "#8c4a5f", "", "none"),
     _Region("unstable if heating is neglected, stable with it", "#7fc4a4", "\\\\\\\\", "#1d4d38"),
 )
+_UNDAMPED = "#f4efdc"
 _MARKS = ("*", "D", "s", "^")
 
 
@@ -106,6 +107,10 @@ def stability_map(
             filled.set_edgecolor(region.edge)
             filled.set_linewidth(0.0)
         shown.append(Patch(fc=region.face, hatch=region.hatch, ec="#333333", label=region.label))
+    neither = (first == 0.0) & (second == 0.0)
+    if neither.any():
+        ax.contourf(along, across, neither.T.astype(float), [0.5, 1.5], colors=[_UNDAMPED])
+        shown.append(Patch(fc=_UNDAMPED, ec="#333333", label="undamped"))
     shown += _borders(ax, along, across, rates, border)
     if not known.all():
         shown.append(Patch(fc="#bbbbbb", ec="#333333", label="not computed"))
