@@ -7,8 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
 
 from ..errors import InputError
 from ..status import Stability
@@ -252,6 +250,8 @@ class FrequencyScan:
     def of(cls, law: Callable[[complex], ComplexArray], speed: float) -> FrequencyScan:
         """Solve the film at the frequencies of the scan."""
         values = np.array([law(1j * ratio * speed) for ratio in _RATIOS])
+        from scipy.interpolate import CubicSpline
+
         return cls(law, speed, CubicSpline(_RATIOS, values))
 
     def threshold(self) -> tuple[Stability, float | None]:
@@ -324,6 +324,8 @@ class FrequencyScan:
         low, high = ratio - 0.01, ratio + 0.01
         if low <= 0.0 or off(low) * off(high) > 0.0:
             return ratio
+        from scipy.optimize import brentq
+
         return float(brentq(off, low, high, xtol=_TOLERANCE))  # type: ignore[arg-type]
 
 

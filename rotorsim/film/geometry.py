@@ -142,11 +142,11 @@ class FilmGeometry:
 
 def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
     """Geometry of a bearing's film, displaced by the journal's translations and by its pads."""
+    inward = 1e-9 * np.diff(mesh.theta_faces)
+    inside = _angles(mesh) + np.stack([np.zeros_like(inward), inward, -inward])
     if bearing.pads:
         bore, displacements = _pads_at_rest(bearing, mesh), _journal_and_pads(bearing, mesh)
     else:
-        inward = 1e-9 * np.diff(mesh.theta_faces)
-        inside = _angles(mesh) + np.stack([np.zeros_like(inward), inward, -inward])
         bore = bearing.radial_clearance + bore_offset(bearing, inside)
         displacements = _translations(bearing, mesh)
     rest = np.repeat(bore[[0, 1, 2, 0, 0]][:, :, None], mesh.shape[1], axis=2)

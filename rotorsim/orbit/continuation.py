@@ -99,7 +99,7 @@ class _Balance:
             raise InputError("floating rings that turn cannot be followed", key="support.ring")
         self.system, self.harmonics, self.forced = system, harmonics, forced
         touched = {i for link in system.links for i in (*link.inner, *link.outer) if i >= 0}
-        self.touched = np.array(sorted(touched))
+        self.touched = np.array(sorted(touched), dtype=np.intp)
         self.held = np.arange(system.size)
         self.count = 2 * harmonics + 1
         turn = 2.0 * np.pi * np.arange(_MOMENTS) / _MOMENTS
@@ -166,7 +166,7 @@ class _Balance:
         q, v = self.motion(c, frequency)
         forces, stiffness, damping = _along(q, v, speed, self.system.scale, links)
         pull = (self.projection @ forces[:, self.held]).ravel()
-        at = np.ix_(np.arange(_MOMENTS), self.touched, self.touched)
+        at = slice(None), self.touched[:, None], self.touched
         k, d, n = stiffness[at], damping[at], self.touched.size
         both = (k.reshape(_MOMENTS, -1), self.basis), (frequency * d.reshape(_MOMENTS, -1),
                                                        self.rates)  # fmt: skip
@@ -174,7 +174,8 @@ class _Balance:
         for values, waves in both:
             slope += np.einsum("ht,tg,ti->hgi", self.projection, waves, values, optimize=True)
         by_c = matrix.reshape(self.count, self.held.size, self.count, self.held.size).copy()
-        place = np.ix_(np.arange(self.count), self.touched, np.arange(self.count), self.touched)
+        waves = np.arange(self.count, dtype=np.intp)
+        place = np.ix_(waves, self.touched, waves, self.touched)
         by_c[place] += np.moveaxis(slope.reshape(self.count, self.count, n, n), 2, 1)
         by_c = by_c.reshape(matrix.shape)
         step = 1e-6 * frequency
@@ -243,7 +244,9 @@ def threshold(
         k, d = derivatives(rest, np.zeros_like(rest), speed, system.scale, plain)
         n = system.size
         matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-plain.inverse @ k, -plain.inverse @ d]])
-        values, shapes = (np.asarray(one, dtype=complex) for one in np.linalg.eig(matrix))
+        found = np.linalg.eig(matrix)
+        values = np.asarray(found.eigenvalues, dtype=np.complex128)
+        shapes = np.asarray(found.eigenvectors, dtype=np.complex128)
         growing = np.where(np.abs(values.imag) > 0.02 * speed, values.real, -np.inf)
         i = int(np.argmax(growing))
         shape = shapes[:n, i] if values[i].imag > 0.0 else shapes[:n, i].conj()

@@ -43,12 +43,12 @@ def reduce_rotor(rotor: Rotor, kept: Sequence[int], modes: int | None = None) ->
         return Reduction(np.eye(rotor.size)[:, order], held, np.zeros(0))
     from scipy.linalg import eigh
 
-    inner = rotor.stiffness[np.ix_(free, free)]
-    squares, shapes = eigh(0.5 * (inner + inner.T), rotor.mass[np.ix_(free, free)])
+    inner = rotor.stiffness[free[:, None], free]
+    squares, shapes = eigh(0.5 * (inner + inner.T), rotor.mass[free[:, None], free])
     count = min(modes, free.size)
     basis = np.zeros((rotor.size, held.size + count))
     basis[held, np.arange(held.size)] = 1.0
-    coupling = rotor.stiffness[np.ix_(free, held)]
+    coupling = rotor.stiffness[free[:, None], held]
     basis[free, : held.size] = -np.linalg.lstsq(inner, coupling, rcond=None)[0]
     basis[free, held.size :] = shapes[:, :count]
     moved = [i for plane in rotor.planes for i in plane]

@@ -424,14 +424,14 @@ class _Builder:
             whole["stiffness"][np.ix_(at, at)] += stiffness
             whole["damping"][np.ix_(at, at)] += damping
         for mount, at in zip(linear.mounts, linear.places, strict=True):
-            whole["mass"][np.ix_(at, at)] += mount.support.matrices(self.top)[2]
+            whole["mass"][at[:, None], at] += mount.support.matrices(self.top)[2]
         static = _padded_vector(self._static_force(self.first), total)
         for at, force in self.preload:
             static[at] += force
         offset = np.zeros(total)
         inner = np.setdiff1d(np.arange(size), reduction.kept)
         if inner.size and modes is not None:
-            held = np.ix_(inner, inner)
+            held = inner[:, None], inner
             offset[inner] = np.linalg.lstsq(rotor.stiffness[held], static[inner], rcond=None)[0]
         matrices = {name: basis.T @ matrix @ basis for name, matrix in whole.items()}
         constant = basis.T @ (static - whole["stiffness"] @ offset)
@@ -575,8 +575,8 @@ class _Builder:
                     raise InputError(
                         f"{mount.name} has no coefficients at {speed:g} rad/s", key="orbit.speed"
                     )
-                stiffness[np.ix_(here, here)] += k
-                damping[np.ix_(here, here)] += c
+                stiffness[here[:, None], here] += k
+                damping[here[:, None], here] += c
                 if mount.name in seals:
                     force[here] += k @ seals[mount.name]
                 elif statics is not None:
@@ -701,7 +701,7 @@ class _Builder:
         added_k = k - own["stiffness"] - speed * own["circulatory"]
         added_c = c - own["damping"] - speed * own["gyroscopic"]
         full = np.flatnonzero(place >= 0)
-        at, here = np.ix_(full, full), np.ix_(place[full], place[full])
+        at, here = ((one[:, None], one) for one in (full, place[full]))
         big_k = whole["stiffness"] + speed * whole["circulatory"]
         big_c = whole["damping"] + speed * whole["gyroscopic"]
         big_k[at] += added_k[here]

@@ -154,6 +154,8 @@ def _default(entry: Entry) -> str:
     if value in (None, "", ()) or not isinstance(value, tuple | Enum | bool | float | int):
         return ""
     if isinstance(value, tuple):
+        if not all(isinstance(one, float | int) for one in value):
+            return ""  # words or pairs
         return f"`[{', '.join(f'{one:g}' for one in value)}]`"
     if isinstance(value, Enum | bool):
         return f"`{value}`".lower()

@@ -52,11 +52,19 @@ class PressureSolution:
 class RuptureCondition(Protocol):
     """What the film does where it would pull."""
 
-    conserves_mass: bool
-    """Whether the Couette flow carries the liquid fraction, so that no oil is lost or made."""
-    conserves_oil: bool
-    """Whether the oil that leaves the full film is kept account of: all but ``half_sommerfeld``,
-    whose full film is not in balance with itself, and the film that does not rupture."""
+    @property
+    def conserves_mass(self) -> bool:
+        """Whether the Couette flow carries the liquid fraction, so that no oil is lost or made."""
+        ...
+
+    @property
+    def conserves_oil(self) -> bool:
+        """Whether the oil that leaves the full film is kept account of.
+
+        All do but ``half_sommerfeld``, whose full film is not in balance with itself, and the film
+        that does not rupture.
+        """
+        ...
 
     def solve(
         self,
