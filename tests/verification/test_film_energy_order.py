@@ -130,7 +130,7 @@ def build(film, level: int):
         flux=np.zeros((4, n, m)), liquid_fraction=np.ones((n, m)), fresh_fraction=np.ones((n, m)),
     )  # fmt: skip
     problem = EnergyProblem(
-        flow=flow, layers=layer_integrals(viscosity), heating=np.zeros((3, n, m)),
+        flow=flow, layers=layer_integrals(viscosity), heating=np.zeros((4, n, m)),
         carry_over=np.where(inlet, 0.0, 1.0),
         conductance=CONDUCTIVITY * area / film.thickness(t)[:, None] * k, heat_capacity=CAPACITY,
         order=np.arange(n), axial_order=np.arange(m), fixed=np.zeros((n, m), dtype=bool),
