@@ -25,7 +25,7 @@ _DENSE = 48
 _BLOCK = 2
 """Vectors that the Krylov space grows by: two planes make double eigenvalues."""
 _EXTRA = 16
-"""Size of the Krylov space beyond twice the number of eigenvalues that are wanted."""
+"""Size of the Krylov space beyond five times the number of pairs that are wanted."""
 _SHIFT = 3e-4
 """Of the highest frequency: the least shift."""
 _CONVERGED = 1e-11
@@ -180,7 +180,7 @@ def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes
     pencil = _Pencil(form, both * mass, both * damping / rate, both * stiffness / rate**2)
     most = 2 * n - _BLOCK
     krylov = _Krylov(pencil, most)
-    size = min(4 * count + _EXTRA, most)
+    size = min(5 * count + _EXTRA, most)
     while True:
         inverse, small, residual = krylov.ritz(size)
         good = residual < _CONVERGED
