@@ -174,8 +174,8 @@ class _Balance:
         for values, waves in both:
             slope += np.einsum("ht,tg,ti->hgi", self.projection, waves, values, optimize=True)
         by_c = matrix.reshape(self.count, self.held.size, self.count, self.held.size).copy()
-        waves = np.arange(self.count, dtype=np.intp)
-        place = np.ix_(waves, self.touched, waves, self.touched)
+        each = np.arange(self.count, dtype=np.intp)
+        place = np.ix_(each, self.touched, each, self.touched)
         by_c[place] += np.moveaxis(slope.reshape(self.count, self.count, n, n), 2, 1)
         by_c = by_c.reshape(matrix.shape)
         step = 1e-6 * frequency
