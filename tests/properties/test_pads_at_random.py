@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import random
 
 import numpy as np
@@ -137,6 +138,9 @@ def test_random_pads(thermal: bool):
 
 
 @pytest.mark.slow
+@pytest.mark.skipif(
+    os.environ.get("HYPOTHESIS_PROFILE") != "nightly", reason="nightly: a minute and a half"
+)
 def test_three_hundred_random_pads():
     _mostly_converged([_check(seed, thermal=False) for seed in range(300)], lost=0.02)
 
