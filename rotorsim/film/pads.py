@@ -67,7 +67,7 @@ class PadSearch:
     """
 
     def __init__(self, problem: FilmProblem, target: Target) -> None:
-        self.whole = problem
+        self.whole: FilmProblem = problem
         self.problem: FilmProblem = problem
         """With the unloaded pads' films standing still."""
         self.target = target
@@ -155,7 +155,8 @@ class PadSearch:
 
     def grown(self, problem: FilmProblem) -> None:
         """Go on in the clearances of `problem`."""
-        self.problem, self.whole = problem, hot_problem(self.whole, problem.bearing)
+        self.problem = problem
+        self.whole = hot_problem(self.whole, problem.bearing)
         self.__dict__.pop("frames", None)
 
     # --- what Newton's method needs -------------------------------------------------------------

@@ -199,10 +199,12 @@ def _ratio(reynolds, base, factor, exponent, added):
 
 @kernel
 def integrate(
-    table, viscosity, thickness, laminar_f0, density, speed, lower, upper, bulk, diffusion,
-    stresses, weight, f0, f2, f2_axial, g, g_tangent, rates, pressure_share, axial_share,
-    shear_share, heat_share, conduction,
-):  # fmt: skip
+    table: Array, viscosity: Array, thickness: Array, laminar_f0: Array, density: float,
+    speed: float, lower: float, upper: float, bulk: Array, diffusion: float, stresses: Array,
+    weight: Array, f0: Array, f2: Array, f2_axial: Array, g: Array, g_tangent: Array, rates: Array,
+    pressure_share: Array, axial_share: Array, shear_share: Array, heat_share: Array,
+    conduction: Array,
+) -> None:  # fmt: skip
     """Fill all integrals of every column.
 
     table : Of `layer_tables`.

@@ -99,7 +99,7 @@ class _Balance:
             raise InputError("floating rings that turn cannot be followed", key="support.ring")
         self.system, self.harmonics, self.forced = system, harmonics, forced
         touched = {i for link in system.links for i in (*link.inner, *link.outer) if i >= 0}
-        self.touched = np.array(sorted(touched), dtype=np.intp)
+        self.touched: NDArray[np.intp] = np.array(sorted(touched), dtype=np.intp)
         self.held = np.arange(system.size)
         self.count = 2 * harmonics + 1
         turn = 2.0 * np.pi * np.arange(_MOMENTS) / _MOMENTS
@@ -174,8 +174,10 @@ class _Balance:
         for values, waves in both:
             slope += np.einsum("ht,tg,ti->hgi", self.projection, waves, values, optimize=True)
         by_c = matrix.reshape(self.count, self.held.size, self.count, self.held.size).copy()
-        each = np.arange(self.count, dtype=np.intp)
-        place = np.ix_(each, self.touched, each, self.touched)
+        each = np.arange(self.count)
+        place = (
+            each[:, None, None, None], self.touched[:, None, None], each[:, None], self.touched
+        )  # fmt: skip
         by_c[place] += np.moveaxis(slope.reshape(self.count, self.count, n, n), 2, 1)
         by_c = by_c.reshape(matrix.shape)
         step = 1e-6 * frequency

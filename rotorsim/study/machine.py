@@ -345,12 +345,16 @@ class MachineAnalysis:
         sweep: _Sweep,
         progress: Progress = lambda *_: None,
     ) -> None:  # fmt: skip
-        self.variant, self.rotor, self.model = variant, rotor, model
-        self.sweep, self.progress = sweep, progress
-        self.description = description = variant.machine
-        self.speeds = np.array(speeds)
-        self.nodes = [node_at(rotor, entry.at) for entry in description.support]
-        self.seal_nodes = [node_at(rotor, entry.at) for entry in description.seal]
+        self.variant: Variant = variant
+        self.rotor: Rotor = rotor
+        self.model: str = model
+        self.sweep: _Sweep = sweep
+        self.progress: Progress = progress
+        self.description: MachineFile = variant.machine
+        self.speeds: Array = np.array(speeds)
+        supports, seals = self.description.support, self.description.seal
+        self.nodes: list[int] = [node_at(rotor, entry.at) for entry in supports]
+        self.seal_nodes: list[int] = [node_at(rotor, entry.at) for entry in seals]
 
     def result(self) -> MachineResult:
         """Statics, films, supports."""
