@@ -133,6 +133,7 @@ def test_interpolation_between_films_is_as_exact_as_it_says(tmp_path):
     assert 0.0 < error < stated
 
 
+@pytest.mark.slow
 def test_the_border_over_destabilising_stiffness_is_the_stiffness_without_decrement():
     machine, speed = on_springs(), 5000.0 * RPM
     whole = analyse_machine(machine)["given"].machine

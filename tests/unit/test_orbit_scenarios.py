@@ -122,6 +122,7 @@ def test_loads_reach_the_problem_in_si():
     assert shock == BaseShock((40.0, 0.0), 0.006, 1.0)
 
 
+@pytest.mark.slow
 def test_jeffcott_rotor():
     read = constant("", JEFFCOTT).rotor
     assert read == Rotor.jeffcott(60.0, 9.6e6, 6.0, 960.0, 1.2e-4)

@@ -374,6 +374,7 @@ def _derivatives(problem):
     return derivatives(zero, zero, problem.drive.speeds[0], system.scale, problem.plain)
 
 
+@pytest.mark.slow
 def test_mapped_and_solved_films_move_alike(tmp_path) -> None:
     made = []
     for force in ("mapped", "short"):
