@@ -37,7 +37,7 @@ def root(
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
     ] = False,
 ) -> None:
-    """Hydrodynamic journal bearings: from drawing and oil to a stability verdict.
+    """Rotors on hydrodynamic bearings: from drawing and oil to a stability verdict.
 
     Exit codes: 0 done; 1 ran, but something did not converge (what and where is said, the rest is
     kept); 2 the input is wrong (file, key, value and what is allowed are said).

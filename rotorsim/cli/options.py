@@ -107,7 +107,7 @@ ClearanceOption = Annotated[
 LoadOption = Annotated[
     str | None,
     option(
-        "--load -w", "FORCE", 'This static load in its place, e.g. "12 kN".',
+        "--load", "FORCE", 'This static load in its place, e.g. "12 kN".',
         f"{OWN} load or eccentricity ratio",
     ),
 ]  # fmt: skip

@@ -11,7 +11,7 @@ _MOST_ROWS = 24
 
 
 def transient(output: Output, scenario: ScenarioArgument, folder: OutputFolder = Path()) -> int:
-    """Let shaft and bush warm up in time, as [transient] says: clearance, film, stability.
+    r"""Let shaft and bush warm up in time, as \[transient] says: clearance, film, stability.
 
     Example: rotorsim transient warming.toml
     """

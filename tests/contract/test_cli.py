@@ -478,3 +478,21 @@ def test_warnings_that_differ_in_numbers_alone_are_told_once():
     assert len(lines) == 2
     assert lines[0].startswith("Taylor number 4.5 is above 41.2 (at 2 of 4 points, from thd")
     assert lines[1].startswith("hot (at 4 of 4 points")
+
+
+def test_no_command_gives_one_short_option_two_meanings():
+    from typer.main import get_group
+
+    from rotorsim.cli.app import app
+
+    for name, command in get_group(app).commands.items():
+        short = [flag for one in command.params for flag in one.opts if not flag.startswith("--")]
+        assert len(short) == len(set(short)), name
+
+
+def test_help_shows_words_in_square_brackets():
+    from typer.testing import CliRunner
+
+    from rotorsim.cli.app import app
+
+    assert "[transient]" in CliRunner().invoke(app, ["transient", "--help"]).output
