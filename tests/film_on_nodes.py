@@ -6,6 +6,7 @@ It answers whether some journal position carries a load, where rotorsim says tha
 
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
@@ -49,6 +50,28 @@ def _sweep(a, carried, held, p, liquid, kind, factor, sweeps, tolerance):
             return
 
 
+def _one_stretch(p, bound, held):
+    """Nodes behind the first film of a line, up to the next `bound` row: none forms there again.
+
+    The film that is kept holds the line's highest pressure; one that begins at a `held` node, or
+    touches one under pressure, is fed and stays.
+    """
+    gone = np.zeros(p.shape, dtype=bool)
+    edges = [*np.flatnonzero(bound), *(np.flatnonzero(bound)[:1] + len(p))]
+    for j in range(p.shape[1]):
+        for first, last in itertools.pairwise(edges):
+            rows = [i % len(p) for i in range(first + 1, last)]
+            films = [list(g) for wet, g in itertools.groupby(rows, lambda i: p[i, j] > 0.0) if wet]
+            best = max(films, key=lambda film: max(p[i, j] for i in film), default=None)
+            for film in films:
+                before, behind = film[0] - 1, (film[-1] + 1) % len(p)
+                fed = held[before, j] or (held[behind, j] and p[behind, j] > 0.0)
+                fed = fed or any(held[i, j] for i in film)
+                if film is not best and not fed:
+                    gone[film, j] = True
+    return gone
+
+
 class NodalFilm:
     """Force of an isoviscous film at any position; load frame."""
 
@@ -57,6 +80,8 @@ class NodalFilm:
         self.bearing, self.clearance = case.bearing, case.bearing.radial_clearance
         self.begins = self.bearing.is_plain and case.film.inception.value == "max_film"
         self.rupture = case.film.cavitation.value
+        self.once = case.film.inception.value == "max_film" and self.rupture == "reynolds"
+        """Whether a film that has ruptured stays so up to its next beginning."""
 
     def thickness(self, theta, y, x, z):
         h = np.full(theta.shape, self.clearance)
@@ -77,6 +102,15 @@ class NodalFilm:
             away = np.abs((theta - groove.center + math.pi) % math.tau - math.pi)
             inside = np.abs(y) <= 0.5 * (groove.length or self.bearing.length) + 1e-12
             found[(away < 0.5 * groove.extent + 1e-12)[:, None] & inside] = groove.supply_pressure
+        return found
+
+    def bounds(self, theta, held):
+        """Rows at which a film may begin: grooves through the whole length, lobes, thickest film."""
+        found = held.all(axis=1)
+        for arc in self.bearing.arcs:
+            found[np.argmin(np.abs((theta - arc.start + math.pi) % math.tau - math.pi))] = True
+        if self.begins or not found.any():
+            found[0] = True
         return found
 
     def thinnest(self, x, z):
@@ -133,6 +167,12 @@ class NodalFilm:
         carried = 0.5 * self.speed * radius * face * dy
         factor, sweeps = (1.0, 4000) if kind == 2 else (1.75, 8000)
         _sweep(a, carried, held, p, np.ones((n, m)), kind, factor, sweeps, tolerance)
+        for _ in range(6 if self.once else 0):
+            gone = _one_stretch(p, self.bounds(theta, held), held)
+            if not gone.any():
+                break
+            held, p = held | gone, np.where(gone, 0.0, p)
+            _sweep(a, carried, held, p, np.ones((n, m)), kind, factor, sweeps, tolerance)
         p = p if self.rupture == "full_sommerfeld" else np.maximum(p, 0.0)
         load = (p * width * dy).sum(axis=1)
         return -np.array([load @ np.cos(theta), load @ np.sin(theta)])
@@ -150,7 +190,8 @@ class NodalFilm:
                 x, z = size * math.cos(angle), size * math.sin(angle)
                 if self.thinnest(x, z) > 0.0:
                     force = self.force(x, z)
-                    found.append(abs(math.atan2(-force[1], -force[0])))
+                    if force.any():
+                        found.append(abs(math.atan2(-force[1], -force[0])))
             return min(found)
         load, scan = target.load, []
         for angle in angles:

@@ -11,13 +11,14 @@ from scipy.optimize import brentq
 
 from ..model import Case, EccentricityTarget
 from ..status import SolveStatus
+from .anderson import AndersonMixer
 from .banded import NoFilmError, SingularFilmError
 from .heat import Heat
 from .layers import LayerIntegrals, isoviscous_layers, layer_integrals
 from .pads import PadSearch
 from .problem import FilmProblem, FilmState, film_problem, film_state
 from .solution import FilmSolution, WallsOf, WarmStart
-from .thd import ThermalFilm, solve_thermal_film, uniform_heat
+from .thd import ThermalFilm, packed, solve_thermal_film, uniform_heat, unpacked
 from .walls import choose_walls
 
 Array = NDArray[np.float64]
@@ -30,9 +31,8 @@ _MAX_REVISIONS = 6
 """Times that the set of unloaded pads may be revised."""
 _ATTITUDES = 24
 """Directions in which the journal is tried where Newton's method finds no attitude."""
-_MAX_TURNS = 16
+_MAX_TURNS = 40
 """Times that position and temperatures are found in turn."""
-_TURN_RELAXATION = 0.7
 _IN_TURN_TOLERANCE = 1e-5
 """Of the forces, relative to the load."""
 _MAX_RETRIES = 2
@@ -105,6 +105,7 @@ def _in_turn(
     `thermal` and `cold` are what was found before, for where this does not settle either.
     """
     q, heat = cold.state.displacement, uniform_heat(search.whole)
+    mixer = AndersonMixer(packed(heat).size)
     for _ in range(_MAX_TURNS):
         layers = _warm_layers(search.whole, heat)
         found = _isothermal(search, q, layers)
@@ -116,19 +117,12 @@ def _in_turn(
             break
         q = found.state.displacement
         film = solve_thermal_film(search.problem, q, initial=heat, walls=walls(search.problem))
-        if not film.converged:
+        if film.out_of_range:
             break
-        if search(film.state)[1] < _IN_TURN_TOLERANCE:
+        if film.converged and search(film.state)[1] < _IN_TURN_TOLERANCE:
             return _conclude(search, film.state, film, cold)
-        heat = _between(heat, film.heat)
+        heat, _ = unpacked(mixer.next(packed(heat), packed(film.heat)), heat)
     return _conclude(search, thermal.state, thermal, cold)
-
-
-def _between(old: Heat, new: Heat) -> Heat:
-    """Part of the way from one field of temperatures to another."""
-    pairs = (old.temperature, new.temperature), (old.bush, new.bush), (old.shaft, new.shaft)
-    film, bush, shaft = (a + _TURN_RELAXATION * (b - a) for a, b in pairs)
-    return Heat(np.asarray(film), np.asarray(bush), float(shaft))
 
 
 def _heat_shape(problem: FilmProblem) -> tuple[int, int, int]:
@@ -266,7 +260,8 @@ def _conclude(
     elif not converged:
         status = SolveStatus.NOT_CONVERGED
         message = (
-            f"stopped after {iterations} iterations: {cause}; the numbers are the last iterate"
+            f"stopped after {iterations} iterations: {cause}{search.give_way(state.displacement)}; "
+            "the numbers are the last iterate"
         )
     return FilmSolution(
         problem=search.problem,

@@ -144,6 +144,18 @@ class PadSearch:
         q[0] += 0.5 * (min(self.reach(0.0), q[0] + self.whole.bearing.radial_clearance) - q[0])
         return q if self.whole.geometry.thinnest_at(self._with_room(q)) > 0.0 else None
 
+    def give_way(self, q: Array) -> str:
+        """Name the pivot that gives way most, if by more than its pad's clearance."""
+        moved = {
+            number + 1: float(q[frame.unknowns.pivot]) / frame.clearance
+            for number, frame in enumerate(self.frames)
+            if frame.unknowns.pivot is not None
+        }
+        number = max(moved, key=lambda one: moved[one], default=0)
+        if not moved or moved[number] < 1.0:
+            return ""
+        return f" (pad {number}'s pivot gives way by {moved[number]:.3g} clearances: it is too soft)"
+
     def _with_room(self, q: Array) -> Array:
         """Level the pads, and push flexible pivots back where the journal would touch."""
         for frame in self.frames:

@@ -263,10 +263,15 @@ def _jump(case: Case, position: _Position) -> str:
 def _nowhere(failed: FilmSolution, case: Case) -> str:
     if isinstance(case.target, LoadTarget):
         return _no_position(failed, case)
+    cause = "the film breaks off, or runs dry, at attitudes between. Give the load instead"
+    if any(groove.supply_pressure > 0.0 for groove in case.bearing.grooves):
+        cause = (
+            "the pressure of the supply outweighs what the motion makes. Give the load instead, a "
+            "lower supply pressure, or a higher speed"
+        )
     return (
-        "at no attitude does the film carry a load along the load line at this eccentricity ratio: "
-        "the pressure of the supply outweighs what the motion makes. Give the load instead, a "
-        "lower supply pressure, or a higher speed"
+        "at no attitude does the film carry a load along the load line at this eccentricity "
+        f"ratio: {cause}"
     )
 
 
@@ -316,7 +321,7 @@ def _solve_plain(
         )  # fmt: skip
         eps = float(_relative(film.state)[0])
         warm = WarmStart(_pair(_relative(film.state)), film.heat, film.state.solution.full)
-        if effort.ends(film) or search.unreachable:
+        if effort.ends(film, lost=search.unreachable):
             return _conclude(film, _load_line(film.state), search, effort.iterations)
 
 
@@ -340,19 +345,23 @@ class _Effort:
         self.settled = settled or self.meshes >= _MAX_MESHES
         return self.settled
 
-    def ends(self, film: _Iterate, *, moved: bool = False) -> bool:
-        """Return whether this solution is the last: its mesh is kept, or the search gave up."""
+    def ends(self, film: _Iterate, *, moved: bool = False, lost: bool = False) -> bool:
+        """Return whether this solution is the last: its mesh is kept, or the search gave up.
+
+        A position that is known roughly, for a mesh graded anew, says nothing about the search.
+        """
         self.iterations += film.iterations
         nowhere = self.meshes == self.asked
         self.asked = self.meshes
         again = moved and self.settled and self.meshes < _MAX_MESHES
-        return nowhere or (self.settled and not again)
+        return nowhere or (self.settled and (lost or not again))
 
 
 def _cold_start(problem: FilmProblem, displacement: Array, search: _Search) -> WarmStart:
     """Return the isothermal film's position, at which a thermal search begins."""
     cold = _iterate_isothermal(problem, displacement, search, None, lambda _: False)
-    displacement = cold.state.displacement if cold.converged else displacement
+    if cold.state.solution.converged and cold.residual < ROUGH_TOLERANCE:
+        displacement = cold.state.displacement
     relative = displacement / problem.bearing.radial_clearance
     return WarmStart(_pair(relative), None, cold.state.solution.full)
 
@@ -407,7 +416,8 @@ def _solve_general(
         position = _turned(local, frame)
         warm = WarmStart(position, film.heat, film.state.solution.full)
         turn = _frame_angle(case.bearing, local)
-        if effort.ends(film, moved=abs(turn) > _FRAME_TOLERANCE) or search.unreachable:
+        moved = abs(turn) > _FRAME_TOLERANCE
+        if effort.ends(film, moved=moved, lost=search is not None and search.unreachable):
             return _conclude(film, frame, search, effort.iterations)
 
 
@@ -517,7 +527,7 @@ def _iterate_isothermal(
         stuck = stuck + 1 if search.unreachable else 0
         if proceed is not None and off < ROUGH_TOLERANCE:
             if not proceed(state):
-                return _Iterate(state, None, state.solution.converged, step, off)
+                return _Iterate(state, None, False, step, off)
             proceed = None
         if off < _FORCE_TOLERANCE or stuck >= 4 or step == _MAX_POSITION_STEPS:
             break

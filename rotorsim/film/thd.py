@@ -23,7 +23,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ..model import InletModel
 from .anderson import AndersonMixer
@@ -195,9 +195,9 @@ def solve_thermal_film(
                 iterations=len(progress.history), residual=step.residual,
             )  # fmt: skip
         mixed = mixer.next(
-            _packed(heat, displacement / scales), _packed(step.mapped, target / scales)
+            packed(heat, displacement / scales), packed(step.mapped, target / scales)
         )
-        heat, relative = _unpacked(mixed, heat, scales.size)
+        heat, relative = unpacked(mixed, heat, scales.size)
         if growth is not None:
             problem, displacement = _grown(growth, problem, displacement, heat, walls, move)
             if growth.lagging:
@@ -391,27 +391,27 @@ def _unbalanced(balance: HeatBalance) -> str:
     return f"{abs(balance.imbalance):.2%} of the dissipated heat is unaccounted for"
 
 
-def _packed(heat: Heat, relative: Array) -> Array:
+def packed(heat: Heat, relative: ArrayLike = ()) -> Array:
     """Return all unknowns in one flat array, a displacement weighing as much as the whole field.
 
     `relative`: displacements over their scales.
     """
-    displacements = _displacement_weight(heat) * relative
+    displacements = _displacement_weight(heat) * np.asarray(relative)
     return np.concatenate(
         [heat.temperature.ravel(), heat.bush.ravel(), [heat.shaft], displacements]
     )
 
 
-def _unpacked(packed: Array, like: Heat, count: int) -> tuple[Heat, Array]:
-    """Reverse `_packed` for `count` displacements; temperatures are kept within their limits."""
+def unpacked(flat: Array, like: Heat, count: int = 0) -> tuple[Heat, Array]:
+    """Reverse `packed` for `count` displacements; temperatures are kept within their limits."""
     films, bore = like.temperature.size, like.bush.size
-    np.clip(packed[:-count], *_TEMPERATURE_LIMITS, out=packed[:-count])
+    np.clip(flat[: flat.size - count], *_TEMPERATURE_LIMITS, out=flat[: flat.size - count])
     heat = Heat(
-        temperature=packed[:films].reshape(like.temperature.shape),
-        bush=packed[films : films + bore].reshape(like.bush.shape),
-        shaft=float(packed[films + bore]),
+        temperature=flat[:films].reshape(like.temperature.shape),
+        bush=flat[films : films + bore].reshape(like.bush.shape),
+        shaft=float(flat[films + bore]),
     )
-    return heat, packed[-count:] / _displacement_weight(like)
+    return heat, flat[flat.size - count :] / _displacement_weight(like)
 
 
 def _displacement_weight(heat: Heat) -> float:

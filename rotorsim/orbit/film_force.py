@@ -42,7 +42,8 @@ _FIELD_SPEEDS, _SLOWEST_FIELD = 7, 0.1
 """Of heated films of a run through the speeds, and the slowest over the highest."""
 _THINNEST = 2e-3
 """Film over clearance up to which it is solved; closer trial steps are pulled back to it."""
-
+_QUASI_STATIC = 1e-3
+"""Inertia of a pad without any, over that of its geometry."""
 
 _FIELDS = ("f0", "f2", "f2_axial", "g", "pressure_share", "shear_share")
 
@@ -159,8 +160,15 @@ class SolvedFilmForce:
 
     @cached_property
     def pad_mass(self) -> Array:
-        """Mass matrix of the pads' displacements."""
-        return pad_mass(self.bearing)[2:, 2:]
+        """Mass matrix of the pads' displacements.
+
+        Quasi-static pads, whose mass or inertia is given as 0, follow the film: they have so little
+        that it shows nowhere, and an implicit method steps over it.
+        """
+        mass, pads = pad_mass(self.bearing), self.bearing.pads
+        pads = tuple(replace(p, mass=None, tilt_inertia=None, pitch_inertia=None) for p in pads)
+        light = _QUASI_STATIC * np.diag(pad_mass(replace(self.bearing, pads=pads)))
+        return (mass + np.diag(np.where(np.diag(mass) == 0.0, light, 0.0)))[2:, 2:]
 
     @cached_property
     def scales(self) -> Array:
@@ -291,8 +299,8 @@ def loaded_film(
     rpm = f"{speed * 30.0 / math.pi:.0f} rpm"
     notes = ["film solved at each step"]
     if case.bearing.pads:
-        _check_inertia(case.bearing)
-        notes.append("all pads move, with their inertia")
+        massless = any(0.0 in (pad.mass, pad.tilt_inertia) for pad in case.bearing.pads)
+        notes.append(f"all pads move, {'following the film' if massless else 'with their inertia'}")
     others = []
     if solution.thermal is not None:
         others = other_films(case, load, other_speeds)
@@ -309,6 +317,12 @@ def loaded_film(
     if solution.problem.mesh.slot.any():
         notes.append(f"p = 0 held where the film is thickest at {rpm}")
     force = SolvedFilmForce.of(solution, others)
+    if case.bearing.pads and np.linalg.eigvalsh(force.pad_mass)[0] <= 0.0:
+        raise InputError(
+            "is too large for the pad's inertias, or these are too small: leave them out to have "
+            "them from the geometry; 0 for all: pads that follow the film (quasi-static)",
+            key="bearing.pads.mass",
+        )
     return LoadedFilm(force, load, force.bearing, "; ".join(notes))
 
 
@@ -327,15 +341,6 @@ def field_speeds(speeds: Sequence[float]) -> list[float]:
     if low > (1.0 - 1e-6) * high:
         return []
     return np.linspace(low, high, _FIELD_SPEEDS)[:-1].tolist()
-
-
-def _check_inertia(bearing: Bearing) -> None:
-    if np.linalg.eigvalsh(pad_mass(bearing)[2:, 2:])[0] <= 0.0:
-        raise InputError(
-            "must be above 0, and so its inertias, where pads move in time; leave them out to have "
-            "them from the geometry",
-            key="bearing.pads.mass",
-        )
 
 
 def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | None) -> LoadedFilm:

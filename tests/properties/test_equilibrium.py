@@ -133,16 +133,24 @@ def test_a_second_method_finds_no_position_where_none_is_found(block):
         none = point.status in (SolveStatus.NO_EQUILIBRIUM, SolveStatus.STARVED)
         assert none or point.status in (SolveStatus.CONVERGED, SolveStatus.OUT_OF_RANGE), seed
         fed = case.bearing.grooves or film.begins or case.film.cavitation is not Cavitation.JFO
-        # Stretches of film that may not form again are in no second method.
-        kept = (
-            case.film.inception is Inception.MAX_FILM
-            and case.film.cavitation is Cavitation.REYNOLDS
-        )
-        if none and fed and not kept:
+        # Where a stretch that may not form again vanishes depends on the mesh.
+        if none and fed and not (film.once and "jumps" in point.message):
             assert film.least_misfit() > 0.02, (seed, point.message)
-        if point.converged and isinstance(case.target, LoadTarget) and seed % 5 == 0:
+        if point.converged and isinstance(case.target, LoadTarget):
             assert film.thinnest(0.0, 0.0) > 0.0
             assert point.load == pytest.approx(case.target.load, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", [754, 1553])
+def test_a_position_that_is_known_roughly_is_not_the_answer(seed):
+    """Next to the bore the search was given up on a mesh graded for another position."""
+    case, speed = any_load(seed)
+    point, _ = solve_case(case, speed)
+    assert isinstance(case.target, LoadTarget)
+    if point.converged:
+        assert point.load == pytest.approx(case.target.load, rel=1e-6)
+    else:
+        assert NodalFilm(case, speed, VISCOSITY).least_misfit() > 0.02
 
 
 def test_a_film_that_nothing_feeds_is_dry_whatever_the_load():

@@ -37,12 +37,12 @@ def pads(pivot, **changes):
     return pad_case(equal_pads(preload=0.5, pivot=pivot), LoadTarget(3000.0), **changes)
 
 
-def rates_by_differences(run: OrbitProblem) -> np.ndarray:
-    """State matrix about the state at rest."""
+def rates_by_differences(run: OrbitProblem, at_rest: float = 1e-6) -> np.ndarray:
+    """State matrix about the state at rest, where no acceleration is above `at_rest` times w^2."""
     rates = right_hand_side(run)[0]
     rest, n = run.force.rest, run.rotor.size
     state = initial_state(replace(run, initial_displacement=(0.0, 0.0)), tuple(rest[:2]))
-    assert np.abs(rates(0.0, state)[n:] / run.force.scales).max() < 1e-6 * SPEED**2
+    assert np.abs(rates(0.0, state)[n:] / run.force.scales).max() < at_rest * SPEED**2
     steps = 1e-5 * np.concatenate([run.force.scales, SPEED * run.force.scales])
     ahead, behind = (
         [rates(0.0, state + sign * step) for step in np.diag(steps)] for sign in (1.0, -1.0)
@@ -107,7 +107,22 @@ def test_heated_pads_rest_where_the_solver_finds_them():
     assert np.ptp(orbit.x) < 1e-4 * CLEARANCE
 
 
-def test_pads_without_inertia_are_refused():
-    pads = equal_pads(preload=0.5, **MASSLESS)
-    with pytest.raises(InputError, match="above 0"):
+@pytest.mark.parametrize("pivot", PIVOTS, ids=lambda pivot: pivot.kind)
+def test_pads_without_inertia_follow_the_film(pivot):
+    """Eigenvalues of the orbit's equations are those of the massless pads' own, which has fewer."""
+    case = pad_case(equal_pads(preload=0.5, pivot=pivot, **MASSLESS), LoadTarget(3000.0))
+    run, solution = problem(case), solve_pads(case, SPEED)
+    assert "following the film" in loaded_film(case, SPEED).note
+    found = np.linalg.eigvals(rates_by_differences(run, 1e-3))
+    dynamics = film_dynamics(solution, np.eye(solution.state.displacement.size))
+    slow = [one for one in rigid_eigenvalues(dynamics, MASS) if abs(one) < 3.0 * SPEED]
+    assert len(slow) >= 4
+    for expected in slow:
+        assert np.abs(found - expected).min() < 2e-3 * abs(expected)
+    assert simulate(run).status is OrbitStatus.COMPLETED
+
+
+def test_inertias_that_no_pad_has_are_refused():
+    pads = equal_pads(preload=0.5, offset=0.6, pivot=SpringPivot(4e8), mass=3.0, tilt_inertia=1e-9)
+    with pytest.raises(InputError, match="too large"):
         loaded_film(pad_case(pads, LoadTarget(3000.0)), SPEED)
