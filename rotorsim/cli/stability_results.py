@@ -59,7 +59,7 @@ def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
             number(frequency / float(speed), 3),
             number(float(found.damping_ratio[i, k]), 3),
             number(float(found.logarithmic_decrement[i, k]), 3),
-            number(float(found.eigenvalues[i, k].real)),
+            number(float(found.growth_rate[i, k])),
             str(whirl[i, k]),
         )
     return table

@@ -47,8 +47,8 @@ class Modes:
 
     @property
     def growth_rate(self) -> Array:
-        """Re lambda [1/s], above 0 where the mode grows."""
-        return self.eigenvalues.real
+        """Re lambda [1/s], above 0 where the mode grows, 0 where it is `undamped`."""
+        return np.where(self.undamped, 0.0, self.eigenvalues.real)
 
     @property
     def undamped(self) -> NDArray[np.bool_]:
@@ -88,9 +88,9 @@ class Modes:
 
     @property
     def damping_ratio(self) -> Array:
-        """-Re lambda/|lambda|."""
+        """-Re lambda/|lambda|, 0 where the mode is undamped."""
         size = np.abs(self.eigenvalues)
-        return np.divide(-self.eigenvalues.real, size, out=np.zeros_like(size), where=size > 0.0)
+        return 0.0 - np.divide(self.growth_rate, size, out=np.zeros_like(size), where=size > 0.0)
 
     @property
     def logarithmic_decrement(self) -> Array:
@@ -98,7 +98,7 @@ class Modes:
         frequency = self.damped_frequency
         return np.where(
             frequency > 0.0,
-            -2.0 * np.pi * self.eigenvalues.real / np.where(frequency > 0.0, frequency, 1.0),
+            0.0 - 2.0 * np.pi * self.growth_rate / np.where(frequency > 0.0, frequency, 1.0),
             np.nan,
         )
 

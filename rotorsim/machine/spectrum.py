@@ -159,7 +159,7 @@ def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes
     regular. Masses are scaled to 1 and time to the shift. A mode counts where its relative residual
     is below 1e-11; the space grows until enough do. The accuracy is that of the matrices' entries:
     with left eigenvector y, |y|' (|K| + |s| |D| + |s|^2 |M|) |x| roundings over |y' (2 s M + D) x|,
-    plus that of the Ritz value.
+    plus that of the Ritz value: its residual, and roundings of the inverse's norm.
     """
     form = machine.band_form
     mass, damping, stiffness = machine.banded(speed)
@@ -200,7 +200,9 @@ def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes
     keep = keep[values[keep].imag >= 0.0]
     values, x = values[keep], krylov.vectors(small[:, keep])
     half = keep.size
-    accuracy = pencil.accuracy(values, x) + _ROUNDINGS * residual[keep] * np.abs(values + 1.0)
+    away = np.abs(values + 1.0)
+    accuracy = pencil.accuracy(values, x) + _ROUNDINGS * residual[keep] * away
+    accuracy += _ROUNDINGS * np.finfo(float).eps * krylov.norm * away**2
     shapes = _of_unit_length(x.T * scale)[:, form.place]
     order = np.concatenate([np.arange(half), np.flatnonzero(values.imag > 0.0)])
     values = np.asarray(rate * values[order], dtype=complex)
@@ -269,6 +271,11 @@ class _Krylov:
         self.basis[:_BLOCK] = _start(2 * self.n)
         self.hessenberg = np.zeros((most + _BLOCK, most))
         self.size = 0
+
+    @property
+    def norm(self) -> float:
+        """Of the inverse on the space."""
+        return float(np.linalg.norm(self.hessenberg[: self.size, : self.size]))
 
     def ritz(self, size: int) -> tuple[ComplexArray, ComplexArray, Array]:
         """Eigenvalues of the inverse, vectors over the basis, and relative residuals."""

@@ -20,7 +20,7 @@ from ..threads import on_one_blas_thread
 from .rotor import Node, Rotor
 
 Array = NDArray[np.float64]
-_MIN_ELEMENTS = 20
+_MIN_ELEMENTS, _MAX_ELEMENTS = 20, 100
 """Of the whole shaft, where the mesh rule decides."""
 _SAME_PLACE = 1e-6
 """Of the shaft's length: places nearer than this share a node."""
@@ -136,8 +136,8 @@ class Beam:
         places : Where a node is needed: supports, seals, probes, loads [m].
         refinement : Number of parts into which every element is cut.
 
-        Elements are shorter than the outer diameter of the section, and the shaft has 20 or more,
-        unless a section says how many it has.
+        Elements are shorter than the outer diameter of the section and a twentieth of the shaft, but
+        no shorter than a hundredth of it, unless a section says how many it has.
         """
         spans = [(*self.span(section), section) for section in self.sections]
         ends = [end for start, stop, _ in spans for end in (start, stop)]
@@ -157,6 +157,7 @@ class Beam:
             count = refinement
             if not any(section.elements for section in here):
                 longest = min(*(s.outer_diameter for s in here), self.length / _MIN_ELEMENTS)
+                longest = max(longest, self.length / _MAX_ELEMENTS)
                 count *= math.ceil((right - left) / longest * (1.0 - 1e-9))
             nodes += [left + (right - left) * i / count for i in range(1, count + 1)]
         double = [fixed[int(np.abs(np.array(fixed) - cut).argmin())] for cut in cuts]
