@@ -58,11 +58,11 @@ def _one_stretch(p, bound, held):
     """
     gone = np.zeros(p.shape, dtype=bool)
     edges = [*np.flatnonzero(bound), *(np.flatnonzero(bound)[:1] + len(p))]
-    for j in range(p.shape[1]):
+    for j, line in enumerate(p.T):
         for first, last in itertools.pairwise(edges):
             rows = [i % len(p) for i in range(first + 1, last)]
-            films = [list(g) for wet, g in itertools.groupby(rows, lambda i: p[i, j] > 0.0) if wet]
-            best = max(films, key=lambda film: max(p[i, j] for i in film), default=None)
+            films = [list(g) for wet, g in itertools.groupby(rows, (line > 0.0).item) if wet]
+            best = max(films, key=lambda film: line[film].max(), default=None)
             for film in films:
                 before, behind = film[0] - 1, (film[-1] + 1) % len(p)
                 fed = held[before, j] or (held[behind, j] and p[behind, j] > 0.0)
@@ -105,7 +105,7 @@ class NodalFilm:
         return found
 
     def bounds(self, theta, held):
-        """Rows at which a film may begin: grooves through the whole length, lobes, thickest film."""
+        """Rows at which a film may begin: full-length grooves, lobes, the thickest film."""
         found = held.all(axis=1)
         for arc in self.bearing.arcs:
             found[np.argmin(np.abs((theta - arc.start + math.pi) % math.tau - math.pi))] = True

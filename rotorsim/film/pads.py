@@ -154,7 +154,9 @@ class PadSearch:
         number = max(moved, key=lambda one: moved[one], default=0)
         if not moved or moved[number] < 1.0:
             return ""
-        return f" (pad {number}'s pivot gives way by {moved[number]:.3g} clearances: it is too soft)"
+        return (
+            f" (pad {number}'s pivot gives way by {moved[number]:.3g} clearances: it is too soft)"
+        )
 
     def _with_room(self, q: Array) -> Array:
         """Level the pads, and push flexible pivots back where the journal would touch."""

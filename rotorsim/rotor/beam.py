@@ -136,8 +136,8 @@ class Beam:
         places : Where a node is needed: supports, seals, probes, loads [m].
         refinement : Number of parts into which every element is cut.
 
-        Elements are shorter than the outer diameter of the section and a twentieth of the shaft, but
-        no shorter than a hundredth of it, unless a section says how many it has.
+        Elements are shorter than the section's outer diameter and a twentieth of the shaft, but no
+        shorter than a hundredth of it, unless a section says how many it has.
         """
         spans = [(*self.span(section), section) for section in self.sections]
         ends = [end for start, stop, _ in spans for end in (start, stop)]
