@@ -113,6 +113,9 @@ def point_rows(point: OperatingPoint) -> list[Row]:
     factor, unit = QUANTITIES["side_flow"].factor, QUANTITIES["side_flow"].unit
     for k, flow in enumerate(point.supply_flow, start=1):
         rows.append(Row(f"supply flow of groove {k}", number(flow * factor), unit))
+    recesses = len(set(point.groove_pressure)) > 1  # behind restrictors, or as given
+    for k, pressure in enumerate(point.groove_pressure if recesses else (), start=1):
+        rows.append(Row(f"pressure in groove {k}", number(pressure / 1e6), "MPa"))
     if np.any(np.nan_to_num(point.moment)):
         rows.append(
             Row("moments on the journal", ", ".join(number(m) for m in point.moment), "N m")

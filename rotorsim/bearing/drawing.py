@@ -161,6 +161,8 @@ def _groove_warnings(bearing: Bearing) -> list[str]:
     if bearing.pads:  # the openings between them are made by the pads
         return found
     for groove in bearing.grooves:
+        if groove.restrictor is not None:  # a recess carries
+            continue
         place = f"groove at {math.degrees(groove.center) % 360.0:.4g} deg from the load line"
         if _in_loaded_zone(groove):
             found.append(

@@ -218,6 +218,8 @@ class OperatingPoint:
     supply_flow : tuple of float
         Oil that each groove must be given [m3/s], in the order of the grooves: what leaves it less
         what arrives from the film before it.
+    groove_pressure : tuple of float
+        In each groove, gauge [Pa]; behind a restrictor a result.
     moment : (2,) array
         M_x and M_y of the film on the journal about the bearing's mid-plane [N m]; 0 where both
         halves are alike.
@@ -299,6 +301,7 @@ class OperatingPoint:
     coefficient_frequency_ratio: float | None = None
     frequency_coefficients: FrequencyCoefficients | None = None
     supply_flow: tuple[float, ...] = ()
+    groove_pressure: tuple[float, ...] = ()
     moment: Array = field(default_factory=lambda: np.full(2, math.nan))
     coefficients_full: FullCoefficients | None = None
     pads: tuple[PadResult, ...] = ()
@@ -360,7 +363,7 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
     values["stability"] = None if values["stability"] is None else Stability(values["stability"])
     for name in ("stiffness", "damping"):
         values[name] = np.array(values[name], dtype=float).reshape(2, 2)
-    for name in ("warnings", "supply_flow"):
+    for name in ("warnings", "supply_flow", "groove_pressure"):
         values[name] = tuple(values.get(name, ()))
     if values["heat_balance"] is not None:
         values["heat_balance"] = HeatBalance(**values["heat_balance"])

@@ -15,7 +15,14 @@ from ..film.flow import FilmFlow, film_flow
 from ..film.geometry import rotation
 from ..film.heat import HeatBalance, with_groove_oil
 from ..film.linearization import following_stiffness
-from ..film.losses import friction_force, journal_moment, peak, side_flow, supply_flow
+from ..film.losses import (
+    friction_force,
+    groove_pressures,
+    journal_moment,
+    peak,
+    side_flow,
+    supply_flow,
+)
 from ..film.pad_solution import solve_pads
 from ..film.solution import FilmSolution, WallsOf, WarmStart, solve_film
 from ..film.walls import choose_walls
@@ -172,6 +179,7 @@ def operating_point(
         frequency_coefficients=frequency_coefficients(dynamics, case.film.frequency_ratios),
         moment=turn @ journal_moment(state),
         supply_flow=demand,
+        groove_pressure=groove_pressures(state),
         coefficients_full=(
             full_coefficients(
                 with_rotations(solution, turn) if case.film.rotations else dynamics, frequency_ratio

@@ -29,7 +29,7 @@ from .geometry import CENTER, Displacements, turnings
 from .kernels import kernel
 from .operator import WEST, StepFaces, film_operator, neighbour
 from .problem import FilmState
-from .rupture import Factor
+from .rupture import BorderedFactor, Factor
 from .thd import ThermalFilm, solve_thermal_film
 
 Array = NDArray[np.float64]
@@ -61,16 +61,22 @@ class _Motions:
         state, shapes = self.state, self.displacements.shapes
         squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
         squeezing = -shapes[:, CENTER] * squeezed
-        squeezing[:, state.operator.fixed] = 0.0
+        squeezing[:, state.operator.fixed & ~_filled(state.solution.factor)] = 0.0
         return np.concatenate([_displacement_sources(state, shapes), squeezing])
 
     def reaction(self, right: Array, factor: Factor | None = None) -> NDArray[Any]:
         """-dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
         state, factor = self.state, factor or self.factor
-        perturbed = np.where(state.solution.full, factor.solve(right), 0.0) * state.operator.area
+        loaded = state.solution.full | _filled(factor)
+        perturbed = np.where(loaded, factor.solve(right), 0.0) * state.operator.area
         shapes = self.displacements.shapes[:, CENTER].reshape(-1, perturbed[0].size)
         multiplicity = state.problem.geometry.multiplicity
         return np.asarray(-multiplicity * shapes @ perturbed.reshape(len(right), -1).T)
+
+
+def _filled(factor: Factor) -> NDArray[np.bool_]:
+    """Cells of recesses whose pressure the factor solves for, (n, m) or ()."""
+    return factor.filled if isinstance(factor, BorderedFactor) else np.zeros((), dtype=bool)
 
 
 def _film_motions(state: FilmState, *, rotations: bool = False) -> tuple[_Motions, ...]:
@@ -153,7 +159,7 @@ def stiffness_matrix(state: FilmState) -> Array:
 def _displacement_sources(state: FilmState, shapes: Array) -> Array:
     """Return what unit displacements add to each cell's continuity [m3/s per m], (q, n, m).
 
-    In cells of openings, to the balance of oil that fills the next pad (`StarvedFactor`).
+    In cells of grooves, to the balance of oil there (`BorderedFactor`).
 
     Parameters
     ----------
@@ -164,7 +170,8 @@ def _displacement_sources(state: FilmState, shapes: Array) -> Array:
     operator, layers = state.operator, state.layers
     sources = np.zeros((len(shapes), *operator.area.shape))
     rates = np.empty((3, 0, 0)) if layers.rates is None else layers.rates
-    returned = getattr(state.solution.factor, "returned", np.zeros((2, len(operator.dx))))
+    factor = state.solution.factor
+    returned = factor.returned if isinstance(factor, BorderedFactor) else np.empty((4, 0, 0))
     conductance, couette = operator.conductance, operator.couette
     if operator.steps is not None:
         conductance, couette = conductance.copy(), couette.copy()
@@ -216,7 +223,7 @@ def _sources(
     g, rates, center_h, returned, sources,
 ):  # fmt: skip
     n, m = pressure.shape
-    varying = rates.shape[1] > 0
+    varying, bordered = rates.shape[1] > 0, returned.shape[1] > 0
     for i in range(n):
         for j in range(m):
             if fixed[i, j]:
@@ -237,8 +244,8 @@ def _sources(
                     if joined:
                         change = 0.5 * (change + shapes[d, 1 + (face ^ 1), k, q])
                     sources[d, i, j] += rate * change
-                    if face < 2 and not joined and returned[face, i] != 0.0:
-                        sources[d, k, 0] -= returned[face, i] * rate * change
+                    if bordered and not joined and returned[face, i, j] != 0.0:
+                        sources[d, k, q] -= returned[face, i, j] * rate * change
                 if not varying:
                     continue
                 # What the flow law changes at both cells behind the face, in their shares.
@@ -257,8 +264,8 @@ def _sources(
                     other /= center_h[k, q]
                 for d in range(shapes.shape[0]):
                     sources[d, i, j] += own * shapes[d, 0, i, j] + other * shapes[d, 0, k, q]
-                    if face < 2 and not joined and returned[face, i] != 0.0:
-                        sources[d, k, 0] -= returned[face, i] * own * shapes[d, 0, i, j]
+                    if bordered and not joined and returned[face, i, j] != 0.0:
+                        sources[d, k, q] -= returned[face, i, j] * own * shapes[d, 0, i, j]
 
 
 def following_stiffness(film: ThermalFilm) -> tuple[Array, bool]:

@@ -114,6 +114,13 @@ def supply_flow(state: FilmState, flow: FilmFlow) -> Array:
     return mesh.multiplicity * demand + _end_leakage(state)
 
 
+def groove_pressures(state: FilmState) -> tuple[float, ...]:
+    """Pressure in each groove [Pa], gauge."""
+    supply, pressure = state.problem.mesh.supply, state.solution.pressure
+    numbers = range(len(state.problem.bearing.grooves))
+    return tuple(float(np.max(pressure[supply == k], initial=0.0)) for k in numbers)
+
+
 def _made_oil(state: FilmState, flow: FilmFlow) -> Array:
     """Oil that the rupture condition makes in each column and at its first face [m3/s], (n,)."""
     west, east, south, north = flow.flux

@@ -24,7 +24,14 @@ from .growth import hot_clearances, with_clearances
 from .layers import LayerIntegrals
 from .mesh import FilmMesh, build_mesh
 from .operator import FaceTopology, FilmOperator, face_topology, film_operator
-from .rupture import OilSupply, PressureSolution, RuptureCondition, rupture_condition
+from .rupture import (
+    FedFilm,
+    OilSupply,
+    PressureSolution,
+    Recesses,
+    RuptureCondition,
+    rupture_condition,
+)
 
 Array = NDArray[np.float64]
 
@@ -121,9 +128,18 @@ def film_problem(
         topology=face_topology(mesh, supply),
         geometry=film_geometry(bearing, mesh),
         flow_law=flow_law(case),
-        rupture=rupture_condition(case.film.cavitation, _oil_supply(bearing, mesh, case.thermal)),
+        rupture=_rupture(case, bearing, mesh),
         cold=cold,
     )
+
+
+def _rupture(case: Case, bearing: Bearing, mesh: FilmMesh) -> RuptureCondition:
+    """Rupture condition of the case, with the recesses and the supply of the bearing."""
+    condition = rupture_condition(case.film.cavitation, _oil_supply(bearing, mesh, case.thermal))
+    if all(groove.restrictor is None for groove in bearing.grooves):
+        return condition
+    recesses = Recesses.of(bearing, mesh, case.lubricant, case.thermal.supply_temperature)
+    return FedFilm(condition, recesses)
 
 
 def _oil_supply(bearing: Bearing, mesh: FilmMesh, thermal: ThermalSettings) -> OilSupply | None:

@@ -27,6 +27,7 @@ from .entries import (
     check,
 )
 from .pads import FULL_TURN, Pad, check_order, gaps
+from .restrictors import AnyRestrictor, Pump
 
 Array = NDArray[np.float64]
 
@@ -68,12 +69,13 @@ class Feed(StrEnum):
 
 @dataclass(frozen=True)
 class Groove:
-    """An axial supply groove.
+    """An axial supply groove, or a recess: an opening in the bore that is full of oil.
 
     center : Middle of the groove, angle from the load line [rad].
     extent : Circumferential extent [rad].
     length : Axial length [m], centred; None: the bearing's whole length.
-    supply_pressure : Gauge pressure held in the groove [Pa].
+    supply_pressure : Gauge pressure held in the groove; before its restrictor if it has one [Pa].
+    restrictor : Between supply and groove; None: the supply's pressure stands in the groove.
     supply_temperature : Temperature of the oil supplied [K]; None: the scenario's supply
         temperature.
     sealed_ends : Whether plugs close the ends of a groove that runs the bearing's whole length. If
@@ -90,9 +92,11 @@ class Groove:
     supply_temperature: Temperature | None = None
     sealed_ends: bool = True
     end_land: Length | None = None
+    restrictor: AnyRestrictor | None = None
 
     def __post_init__(self) -> None:
         check(self, "groove")
+        self._check_restrictor()
         _require(
             self.extent < FULL_TURN, "must be above 0 and below 360 deg", "groove.extent",
             self.extent,
@@ -110,6 +114,20 @@ class Groove:
             "groove.end_land",
             self.end_land,
         )
+
+    def _check_restrictor(self) -> None:
+        if self.restrictor is None:
+            return
+        pumped = isinstance(self.restrictor, Pump)
+        _require(
+            pumped == (self.supply_pressure == 0.0),
+            "a pump gives its flow at any pressure: leave this out"
+            if pumped
+            else "must be above 0 before a restrictor",
+            "groove.supply_pressure",
+            self.supply_pressure,
+        )
+        _require(self.sealed_ends, "must be true behind a restrictor", "groove.sealed_ends", False)
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import RotorsimError
 from ..model import BushModel, EccentricityTarget, LoadTarget, ShaftModel, ThermalModel
+from ..model.restrictors import Capillary, Orifice, Pump
 from ..rows import RPM, ZERO_CELSIUS, Row, number, with_unit
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
-    from ..model import Bearing, Pad
+    from ..model import Bearing, Groove, Pad
 
 
 _Rows = list[Row]
@@ -30,6 +31,23 @@ def input_rows(scenario: Scenario) -> dict[str, _Rows]:
         "film": _film(scenario),
         "operation": _operation(scenario),
     }
+
+
+def _supply(groove: Groove) -> str:
+    """How a groove is fed."""
+    pressure = f"{number(groove.supply_pressure / 1e3)} kPa"
+    match groove.restrictor:
+        case None:
+            return pressure
+        case Pump(rate):
+            return f"pump of {number(rate * 6e4)} L/min"
+        case Capillary(diameter, length):
+            size = f"{_millimetres(diameter)} x {_millimetres(length)}"
+            return f"{pressure} before a capillary {size}"
+        case Orifice(diameter):
+            return f"{pressure} before an orifice {_millimetres(diameter)}"
+        case other:
+            return f"{pressure} before a {other.kind}"
 
 
 def _millimetres(value: float) -> str:
@@ -67,7 +85,7 @@ def _bearing(scenario: Scenario) -> _Rows:
             Row(
                 f"groove {place}",
                 f"at {_degrees(groove.center)}, {_degrees(groove.extent)} wide, "
-                f"{_millimetres(length)} long, {number(groove.supply_pressure / 1e3)} kPa",
+                f"{_millimetres(length)} long, {_supply(groove)}",
             )
         )
     for place, arc in enumerate(bearing.arcs, start=1):

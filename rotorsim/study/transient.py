@@ -266,7 +266,7 @@ def conditions_of(
 def _unfed(case: Case) -> Any:
     """The bearing without pressure in its grooves, their own oil gone."""
     grooves = tuple(
-        replace(groove, supply_pressure=0.0, supply_temperature=None)
+        replace(groove, supply_pressure=0.0, supply_temperature=None, restrictor=None)
         for groove in case.bearing.grooves
     )
     return replace(case.bearing, grooves=grooves, profile=None, preload=None, offset=None)

@@ -53,6 +53,9 @@ _SAID_OTHERWISE = {
             ("diametral_clearance", "diametrical_clearance", "diameter_clearance"), _CLEARANCE
         ),
         "clearance": f"write radial_clearance ({_HALF})",
+        **dict.fromkeys(
+            ("recess", "recesses"), "write [[bearing.groove]] with a restrictor = { kind = ... }"
+        ),
         **dict.fromkeys(("length_to_diameter", "length_diameter_ratio", "width"), _LENGTH),
     },
     "": dict.fromkeys(("oil", "lubrication", "lube", "fluid"), _OIL),

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from ...model import Cavitation
 from .base import Factor, PressureSolution, RuptureCondition
+from .bordered import BorderedFactor
 from .mass_conserving import MassConserving
+from .recesses import FedFilm, Recesses
 from .reynolds import Reynolds
 from .sommerfeld import FullSommerfeld, HalfSommerfeld
 from .starvation import OilSupply
@@ -28,4 +30,7 @@ def rupture_condition(name: Cavitation, supply: OilSupply | None = None) -> Rupt
     return _CONDITIONS[name]
 
 
-__all__ = ["Factor", "OilSupply", "PressureSolution", "RuptureCondition", "rupture_condition"]
+__all__ = [
+    "BorderedFactor", "Factor", "FedFilm", "OilSupply", "PressureSolution", "Recesses",
+    "RuptureCondition", "rupture_condition",
+]  # fmt: skip

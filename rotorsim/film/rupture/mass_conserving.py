@@ -20,8 +20,9 @@ from ..banded import SingularFilmError, column_order
 from ..kernels import kernel
 from ..operator import FilmOperator
 from .base import Factor, PressureSolution, with_fixed
+from .bordered import BorderedFactor
 from .reynolds import Reynolds
-from .starvation import OilSupply, StarvedFactor
+from .starvation import OilSupply
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -155,7 +156,10 @@ class MassConserving:
         self, factor: Factor, rate: NDArray[Any]
     ) -> tuple[Factor, NDArray[Any] | None]:
         """Return the factor with the oil that the ruptured cells store and give back."""
-        assert isinstance(factor, MixedFactor | StarvedFactor)
+        if isinstance(factor, BorderedFactor):  # openings store nothing
+            film, weight = self.dynamic_factor(factor.film, rate)
+            return factor.with_film(film), weight
+        assert isinstance(factor, MixedFactor)
         return factor.with_stored_oil(rate)
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
@@ -251,13 +255,13 @@ def _supplied(
     operator: FilmOperator,
     full: Flags,
     starved: Flags,
-) -> tuple[MixedFactor | StarvedFactor, Array, Array]:
+) -> tuple[MixedFactor | BorderedFactor, Array, Array]:
     """Factor, unknowns, and the fraction that each opening could fill of its pad's leading edge."""
-    bordered: MixedFactor | StarvedFactor = factor
+    bordered: MixedFactor | BorderedFactor = factor
     found = np.zeros(0)
     if starved.any():
         bordered = supply.bordered(factor, operator, full, starved)
-        unknown, found = bordered.at_rest(right)
+        unknown, found = supply.at_rest(bordered, right, operator, full, starved)
     else:
         unknown = factor.solve(right)
     demand, weights, rest = supply.balance(operator, full)

@@ -74,6 +74,8 @@ def _coarse_guess(operator: FilmOperator, source: Array) -> Flags:
     coarse = _coarsened(operator)
     summed = source.reshape(n // 2, 2, m // 2, 2).sum(axis=(1, 3))
     film = ~coarse.fixed
+    if not film.any():  # lands of one cell between grooves
+        return ~operator.fixed
     solution = _active_set(coarse, summed, film, _coarse_guess(coarse, summed) & film)
     return np.repeat(np.repeat(solution.full, 2, axis=0), 2, axis=1)
 

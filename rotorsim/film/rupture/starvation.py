@@ -13,12 +13,13 @@ column.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..operator import EAST, WEST, FilmOperator
+from .bordered import BorderedFactor
 
 if TYPE_CHECKING:
     from .mass_conserving import MixedFactor
@@ -74,80 +75,29 @@ class OilSupply:
 
     def bordered(
         self, factor: MixedFactor, operator: FilmOperator, full: Flags, starved: Flags
-    ) -> StarvedFactor:
+    ) -> BorderedFactor:
         """Border the film's factor by the balances of the `starved` openings, (g,)."""
-        demand, weights, rest = self.balance(operator, full)
+        demand, weights, _ = self.balance(operator, full)
         chosen = np.flatnonzero(starved)
         ahead = (self._leading == chosen[:, None])[:, :, None]
-        cells = np.zeros((chosen.size, *full.shape), dtype=bool)
-        cells[:, :, 0] = self.groove == chosen[:, None]
+        cells = np.repeat((self.groove == chosen[:, None])[:, :, None], full.shape[1], axis=2)
         # What the film takes from an opening, it does not leave to it; of what it gives, a part.
-        returned = np.zeros((2, *full.shape[:1]), dtype=float)
-        leading, trailing = np.isin(self._leading, chosen), np.isin(self._trailing, chosen)
-        returned[WEST, leading], returned[EAST, trailing] = 1.0, self.carry_over
-        return StarvedFactor.of(
-            factor, ahead * operator.couette[0], weights[chosen], demand[chosen],
-            (self.flow + rest)[chosen], cells, returned,
-        )  # fmt: skip
+        returned = np.zeros((4, *full.shape))
+        returned[WEST, np.isin(self._leading, chosen)] = 1.0
+        returned[EAST, np.isin(self._trailing, chosen)] = self.carry_over
+        return BorderedFactor.of(
+            factor, ahead * operator.couette[0], weights[chosen], demand[chosen], cells, returned
+        )
 
-
-@dataclass(frozen=True)
-class StarvedFactor:
-    """Factor of the film bordered by balances of oil.
-
-    Sources of a balance stand in the first row of its opening's cells.
-
-    inflow, weights : (s, n, m) arrays. What a full leading edge takes in, and what comes back, of
-        each balance.
-    columns : (s, n, m) array. The film's answer to the inflows.
-    demand, given : (s,) arrays [m3/s]
-    cells : (s, n, m) bool array
-    returned : (2, n) array. Part of a change of what enters through a column's west or east face
-        that its opening lacks.
-    """
-
-    film: MixedFactor
-    inflow: Array
-    weights: Array
-    columns: NDArray[Any]
-    demand: Array
-    given: Array
-    cells: Flags
-    returned: Array
-
-    @classmethod
-    def of(
-        cls, film: MixedFactor, inflow: Array, weights: Array, demand: Array, given: Array,
-        cells: Flags, returned: Array,
-    ) -> StarvedFactor:  # fmt: skip
-        """Solve for the columns."""
-        return cls(film, inflow, weights, film.solve(inflow), demand, given, cells, returned)
-
-    def at_rest(self, right: Array) -> tuple[Array, Array]:
-        """Solution of the film itself, and the fractions (s,) that enter."""
+    def at_rest(
+        self, factor: BorderedFactor, right: Array, operator: FilmOperator, full: Flags,
+        starved: Flags,
+    ) -> tuple[Array, Array]:  # fmt: skip
+        """Solution of the film, and the fractions (s,) that enter behind the `starved` openings."""
+        _, _, rest = self.balance(operator, full)
         right = right.copy()
-        right[self.cells.any(axis=0)] = 0.0
-        for cells, given in zip(self.cells, self.given, strict=True):
+        right[factor.cells.any(axis=0)] = 0.0
+        for cells, given in zip(factor.cells, (self.flow + rest)[starved], strict=True):
             right[tuple(np.argwhere(cells)[0])] = given
-        solved, fractions = self._solve(right[None])
+        solved, fractions = factor.solve_both(right[None])
         return solved[0], fractions[0]
-
-    def solve(self, right: Array) -> NDArray[Any]:
-        """Solve for (..., n, m) right-hand sides [m3/s]."""
-        flat = np.asarray(right, dtype=float).reshape(-1, *self.cells.shape[1:])
-        return self._solve(flat)[0].reshape(np.shape(right))
-
-    def _solve(self, right: Array) -> tuple[NDArray[Any], NDArray[Any]]:
-        solved = self.film.solve(right)
-        back = np.tensordot(solved, self.weights, axes=((1, 2), (1, 2)))
-        sources = np.tensordot(right, self.cells.astype(float), axes=((1, 2), (1, 2)))
-        answer = np.tensordot(self.weights, self.columns, axes=((1, 2), (1, 2)))
-        fractions = np.linalg.solve(np.diag(self.demand) - answer, (back + sources).T).T
-        return solved + np.tensordot(fractions, self.columns, axes=1), fractions
-
-    def with_stored_oil(self, rate: NDArray[Any]) -> tuple[StarvedFactor, NDArray[Any]]:
-        """As the film's; openings store nothing."""
-        film, weight = self.film.with_stored_oil(rate)
-        return StarvedFactor.of(
-            film, self.inflow, self.weights, self.demand, self.given, self.cells, self.returned
-        ), weight
