@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model import Bearing, Pad
-from .geometry import FilmGeometry, PadUnknowns, pad_unknowns
+from .geometry import PadUnknowns, pad_unknowns
 from .mesh import FilmMesh
 
 Array = NDArray[np.float64]
@@ -55,9 +55,12 @@ class PadFrame:
         """Tilt [rad] at which E_t = 0."""
         return float(q[self.unknowns.tilt] - self.eccentricity(q)[1] / self.arm)
 
-    def tilt_limits(self, geometry: FilmGeometry, q: Array) -> tuple[float, float]:
-        """Tilts [rad] at which leading and trailing edge would touch the journal at `q`."""
-        h = geometry.thickness(q)[:, self.columns]
+    def tilt_limits(self, thickness: Array, q: Array) -> tuple[float, float]:
+        """Tilts [rad] at which leading and trailing edge would touch the journal at `q`.
+
+        thickness : (5, columns, m) array [m]. Of the whole film there.
+        """
+        h = thickness[:, self.columns]
         with np.errstate(divide="ignore"):
             room = h / (self.arm * self.sine)
         ahead = np.where(self.sine < 0.0, room, -np.inf)
@@ -65,11 +68,11 @@ class PadFrame:
         tilt = float(q[self.unknowns.tilt])
         return tilt + float(ahead.max()), tilt + float(behind.min())
 
-    def idle_tilt(self, geometry: FilmGeometry, q: Array) -> float:
+    def idle_tilt(self, limits: tuple[float, float], q: Array) -> float:
         """Tilt [rad] at which the film diverges all over the pad, as far as there is room."""
         along = self.eccentricity(q)[0]
         edge = (1.0 if along <= 0.0 else -1.0) * self._half_beyond(along)
-        low, high = self.tilt_limits(geometry, q)
+        low, high = limits
         wanted = self.level_tilt(q) + along * math.tan(edge) / self.arm
         return min(max(wanted, low + 0.05 * (high - low)), high - 0.05 * (high - low))
 

@@ -241,10 +241,8 @@ class PadSearch:
             stiffness[[0, 1], [0, 1]] += slack
             step = _solve(stiffness, missing)
         following = self.allowed(q, q + weights * step)
-        thin = min(
-            self.problem.geometry.thickness(q)[:, frame.columns].min() / frame.clearance
-            for frame in self.frames
-        )
+        film = self.problem.geometry.thickness(q).min(axis=(0, 2))
+        thin = min(film[frame.columns].min() / frame.clearance for frame in self.frames)
         self.unreachable = bool(thin < 2.0 * _THINNEST and off > 1e-3)
         return following, off
 
@@ -335,16 +333,18 @@ class PadSearch:
         q, guess = q.copy(), q
         brackets: dict[int, tuple[float, float]] = {}
         asked: list[int] = []
-        for number, frame in enumerate(self.frames):
+        for frame in self.frames:
             if frame.unknowns.pivot is not None:
                 q[frame.unknowns.pivot] = max(q[frame.unknowns.pivot], 0.0)
-            limits = frame.tilt_limits(self.whole.geometry, q)
+        film = self.whole.geometry.thickness(q)
+        for number, frame in enumerate(self.frames):
+            limits = frame.tilt_limits(film, q)
             above = self._above(frame, q)
             if self._asks(frame, above):
                 asked.append(number)
             elif above:
                 brackets[number] = (max(frame.level_tilt(q), limits[0]), limits[1])
-            q[frame.unknowns.tilt] = frame.idle_tilt(self.whole.geometry, q)
+            q[frame.unknowns.tilt] = frame.idle_tilt(limits, q)
         full: Flags | None = None
         if asked:
             found, full = self._sampled(q, asked, layers)
@@ -400,7 +400,8 @@ class PadSearch:
         self, q: Array, asked: list[int], layers: LayerIntegrals
     ) -> tuple[dict[int, tuple[float, float]], Flags | None]:
         """Bracket the uppermost root of each pad `asked` for, where its moment falls."""
-        limits = {n: self.frames[n].tilt_limits(self.whole.geometry, q) for n in asked}
+        film = self.whole.geometry.thickness(q)
+        limits = {n: self.frames[n].tilt_limits(film, q) for n in asked}
         shares = (np.arange(_SAMPLES) + 0.5) / _SAMPLES
         levers, full = [], None
         for share in shares:
@@ -421,7 +422,7 @@ class PadSearch:
             elif rising.size:
                 found[number] = (float(low + shares[-1] * (high - low)), high)
             else:
-                q[frame.unknowns.tilt] = frame.idle_tilt(self.whole.geometry, q)
+                q[frame.unknowns.tilt] = frame.idle_tilt((low, high), q)
         return found, full
 
     def _bracketed(

@@ -133,8 +133,7 @@ def test_a_few_random_pads():
 @pytest.mark.parametrize("thermal", [False, True], ids=["isothermal", "thermal"])
 def test_random_pads(thermal: bool):
     found = [_check(seed, thermal=thermal) for seed in range(60 if not thermal else 25)]
-    # Pivots so soft that they give way by clearances leave some thermal films without an end.
-    _mostly_converged(found, lost=0.12 if thermal else 0.02)
+    _mostly_converged(found, lost=0.0)
 
 
 @pytest.mark.slow
@@ -142,12 +141,14 @@ def test_random_pads(thermal: bool):
     os.environ.get("HYPOTHESIS_PROFILE") != "nightly", reason="nightly: a minute and a half"
 )
 def test_three_hundred_random_pads():
-    _mostly_converged([_check(seed, thermal=False) for seed in range(300)], lost=0.02)
+    _mostly_converged([_check(seed, thermal=False) for seed in range(300)], lost=0.0)
+    # One pivot gives way by 13 clearances at 295 degC.
+    _mostly_converged([_check(seed, thermal=True) for seed in range(300)], lost=0.01, most=0.75)
 
 
-def _mostly_converged(found: list[SolveStatus], *, lost: float) -> None:
+def _mostly_converged(found: list[SolveStatus], *, lost: float, most: float = 0.8) -> None:
     assert sum(status is SolveStatus.NOT_CONVERGED for status in found) <= lost * len(found)
-    assert sum(status is SolveStatus.CONVERGED for status in found) > 0.8 * len(found)
+    assert sum(status is SolveStatus.CONVERGED for status in found) > most * len(found)
     assert all(
         status in (SolveStatus.CONVERGED, SolveStatus.NOT_CONVERGED, *TRUTHFUL) for status in found
     )

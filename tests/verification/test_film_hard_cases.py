@@ -51,3 +51,13 @@ def test_insulated_shaft_between_partial_grooves(eps, speed, clearance):
     )
     point, _ = solve_case(case, speed)
     assert point.converged, point.message
+
+
+def test_half_sommerfeld_whose_edge_circles_around_a_row_of_cells():
+    """The line p = 0 is known to one cell; nothing is left below zero."""
+    bearing = Bearing(0.05, 0.08, 100e-6)
+    case = thermal_case(0.5, mesh=(156, 48, 24), bearing=bearing, cavitation="half_sommerfeld")
+    point, _ = solve_case(case, 1570.8, keep_fields=True)
+    assert point.converged, point.message
+    assert point.fields is not None
+    assert point.fields.pressure.min() >= 0.0

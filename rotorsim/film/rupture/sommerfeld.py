@@ -52,8 +52,10 @@ class HalfSommerfeld(ConnectedFilm):
         raw = with_fixed(operator, factor.solve(source_term(operator, squeeze)))
         positive = film & (raw > 0.0)
         full = positive if frozen is None else frozen
-        kept = np.where(full | operator.fixed, raw, 0.0)
-        violations = int(np.sum(full != positive))
+        kept = np.where(full, np.maximum(raw, 0.0), np.where(operator.fixed, raw, 0.0))
+        # The line p = 0 is known to one cell along the film.
+        wrong = full != positive
+        violations = int(np.sum(wrong & np.roll(wrong, 1, axis=0)))
         return operator, PressureSolution(kept, raw, full, factor, 1, True, violations=violations)
 
     def refactor(self, operator: FilmOperator, solution: PressureSolution) -> Factor:
