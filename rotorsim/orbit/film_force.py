@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import block_diag
 
 from ..bearing.dynamics import pad_mass
+from ..bearing.interpolation import Coefficients
+from ..bearing.operating_point import condensed
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.geometry import film_geometry, pad_unknowns, rotation
@@ -22,6 +24,8 @@ from ..film.linearization import linearize
 from ..film.pad_solution import solve_pads
 from ..film.problem import FilmProblem, FilmState, film_state
 from ..film.solution import FilmSolution, solve_film
+from ..machine.control import StateFeedback
+from ..machine.matrices import first_order
 from ..model import (
     Bearing,
     Case,
@@ -203,6 +207,23 @@ class SolvedFilmForce:
         held, tangent = self._pivots(q)
         return self._turn @ state.force - held, stiffness + np.diag(tangent), damping
 
+    def synchronous(self, speed: float) -> Coefficients:
+        """K and C of the journal whose pads move with it at the shaft's frequency, at rest."""
+        rest = self._turn @ self.rest
+        _, stiffness, damping = self.linear(rest, np.zeros_like(rest), speed)
+        law = stiffness + 1j * speed * damping
+        law[2:, 2:] -= speed**2 * self.pad_mass
+        felt = condensed(law, 2)
+        return Coefficients(np.real(felt), np.imag(felt) / speed, speed)
+
+    def eigenvalues(self, mass: float, speed: float) -> NDArray[np.complex128]:
+        """Of a rigid rotor [kg] and the pads at rest [1/s], the least stable one first."""
+        rest = self._turn @ self.rest
+        _, stiffness, damping = self.linear(rest, np.zeros_like(rest), speed)
+        inertia = np.asarray(block_diag(mass * np.eye(2), self.pad_mass))
+        values = np.linalg.eigvals(first_order(inertia, damping, stiffness)[0])
+        return np.asarray(values[np.argsort(-np.real(values), kind="stable")], dtype=complex)
+
     def _pivots(self, q: Array) -> tuple[Array, Array]:
         """Forces of the pads' pivots, and their stiffnesses."""
         held, tangent = np.zeros((2, len(q)))
@@ -244,6 +265,44 @@ class SolvedFilmForce:
         thin = geometry.land & (h < least)
         share = np.clip((rest - least) / (rest - h), 0.0, 1.0)
         return self.rest + float(share[:, thin.any(axis=0)].min()) * (q - self.rest)
+
+
+@dataclass
+class ActuatedSolvedFilm(SolvedFilmForce):
+    """A film solved at every call, and an actuator on the journal that keeps it where it rests."""
+
+    feedback: StateFeedback | None = None
+
+    @classmethod
+    def beside(cls, film: SolvedFilmForce, feedback: StateFeedback) -> ActuatedSolvedFilm:
+        """The film with an actuator beside it."""
+        own = {one.name: getattr(film, one.name) for one in fields(film) if one.init}
+        return cls(**{**own, "name": f"{film.name} with actuator"}, feedback=feedback)
+
+    def actuator_force(self, x: ArrayLike, y: ArrayLike, vx: ArrayLike, vy: ArrayLike) -> Array:
+        """Force of the actuator alone (..., 2) [N]."""
+        assert self.feedback is not None
+        rest = self._turn @ self.rest
+        return self.feedback(
+            np.stack([np.subtract(x, rest[0]), np.subtract(y, rest[1]), vx, vy], axis=-1)
+        )
+
+    def forces(self, q: Array, v: Array, speed: float) -> Array:
+        """As of the film alone, with the actuator's force on the journal."""
+        both = super().forces(q, v, speed)
+        both[:2] += self.actuator_force(*q[:2], *v[:2])
+        return both
+
+    def linear(self, q: Array, v: Array, speed: float) -> tuple[Array, Array, Array]:
+        """As of the film alone, with the actuator; a saturated axis has no stiffness."""
+        assert self.feedback is not None
+        force, stiffness, damping = super().linear(q, v, speed)
+        own = self.actuator_force(*q[:2], *v[:2])
+        gain = self.feedback.gain * (np.abs(own) < self.feedback.max_force)[:, None]
+        force[:2] += own
+        stiffness[:2, :2] += gain[:, :2]
+        damping[:2, :2] += gain[:, 2:]
+        return force, stiffness, damping
 
 
 def can_be_mapped(case: Case) -> bool:

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from ..bearing.interpolation import Coefficients
 from ..bearing.whirl import WhirlThreshold, rigid_threshold
 from ..errors import InputError
-from ..machine.control import ActuatedForce
 from ..model import Case
 from ..model.orbit import ActuatorSettings, Design
 
@@ -34,8 +33,9 @@ class ControlStudy:
 
     equilibrium : (float, float) [m]
     passive : Of the film alone.
-    passive_eigenvalues, controlled_eigenvalues : (4,) complex arrays [1/s]
-    system : Rigid rotor on the linearised film.
+    passive_eigenvalues, controlled_eigenvalues : Complex arrays [1/s], the least stable one first:
+        four, and those of tilting pads.
+    system : Rigid rotor on the linearised film; of pads at the shaft's frequency.
     margins : (LoopMargins, LoopMargins). Of the loops in x and in y.
     passive_orbit, controlled_orbit : On the nonlinear film, from the disturbance.
     largest_force : Of one axis of the actuator in that run [N].
@@ -97,17 +97,11 @@ def study_control(
     Raises InputError: The design reaches its aim with no gain, or nothing carries the load.
     """
     from ..machine.control import loop_margins, state_space
-    from ..orbit.film_force import loaded_film
-    from ..orbit.forces import CompilableForce, find_equilibrium, linearize_force
+    from ..orbit.film_force import ActuatedSolvedFilm, SolvedFilmForce, loaded_film
+    from ..orbit.forces import CompilableForce
 
-    if case.bearing.pads:
-        raise InputError(
-            'is for a bore; on tilting pads use [orbit.actuator] with force = "linear"',
-            key="bearing.kind",
-        )
     film = loaded_film(case, speed)
-    rest = find_equilibrium(film.force, (film.load, 0.0), speed)
-    linear = Coefficients(*linearize_force(film.force, *rest, speed), speed)
+    rest, linear = _at_rest(film.force, (film.load, 0.0), speed)
     system = state_space(linear, mass)
     clearance = case.bearing.radial_clearance
     feedback = _design_feedback(settings or ActuatorSettings(), linear, mass, clearance, film.load)
@@ -117,14 +111,19 @@ def study_control(
     if revolutions is None:
         revolutions = 100 if isinstance(film.force, CompilableForce) else 20
     if revolutions:
-        actuated = ActuatedForce(film.force, feedback, rest)
         orbits = [
             _run(force, film, rest, speed, mass, disturbance, revolutions)
-            for force in (film.force, actuated)
+            for force in (film.force, _actuated(film.force, feedback, rest))
         ]
         held = orbits[1]
         assert held is not None
         largest = float(np.abs(held.actuator_force).max())
+    passive, controlled = _sorted(system.poles()), _sorted(feedback.closed_loop(system).poles())
+    note = film.note
+    if isinstance(film.force, SolvedFilmForce) and film.force.pads:
+        note += "; designed on what the journal feels at the shaft's frequency"
+        passive = film.force.eigenvalues(mass, speed)
+        controlled = ActuatedSolvedFilm.beside(film.force, feedback).eigenvalues(mass, speed)
     return ControlStudy(
         speed=speed,
         mass=mass,
@@ -132,16 +131,42 @@ def study_control(
         disturbance=disturbance,
         equilibrium=rest,
         passive=rigid_threshold(linear.stiffness, linear.damping, speed),
-        passive_eigenvalues=_sorted(system.poles()),
-        controlled_eigenvalues=_sorted(feedback.closed_loop(system).poles()),
+        passive_eigenvalues=passive,
+        controlled_eigenvalues=controlled,
         system=system,
         feedback=feedback,
         margins=(loop_margins(system, feedback, 0), loop_margins(system, feedback, 1)),
         passive_orbit=orbits[0],
         controlled_orbit=orbits[1],
         largest_force=largest,
-        note=film.note,
+        note=note,
     )
+
+
+def _at_rest(
+    film: BearingForce, load: tuple[float, float], speed: float
+) -> tuple[tuple[float, float], Coefficients]:
+    """Where the journal rests [m], and what it feels there; of pads at the shaft's frequency."""
+    from ..orbit import LinearForce
+    from ..orbit.film_force import SolvedFilmForce
+    from ..orbit.forces import find_equilibrium, linearize_force
+
+    if isinstance(film, SolvedFilmForce) and film.pads:
+        return (float(film.rest[0]), float(film.rest[1])), film.synchronous(speed)
+    rest = film.position(speed) if isinstance(film, LinearForce) else None
+    rest = rest or find_equilibrium(film, load, speed)
+    return rest, Coefficients(*linearize_force(film, *rest, speed), speed)
+
+
+def _actuated(
+    film: BearingForce, feedback: StateFeedback, rest: tuple[float, float]
+) -> BearingForce:
+    from ..machine.control import ActuatedForce
+    from ..orbit.film_force import ActuatedSolvedFilm, SolvedFilmForce
+
+    if isinstance(film, SolvedFilmForce):
+        return ActuatedSolvedFilm.beside(film, feedback)
+    return ActuatedForce(film, feedback, rest)
 
 
 def _run(
@@ -159,6 +184,7 @@ def _run(
             static_load=(film.load, 0.0),
             equilibrium=rest,
             initial_displacement=(disturbance, 0.0),
+            bearing=film.bearing if film.bearing.pads else None,
             minimum_film=film.bearing.roughness,
             samples_per_revolution=32,
         )
@@ -206,29 +232,16 @@ def with_actuator(
 
     Raises InputError: The speed changes, or as `_design_feedback`.
     """
-    from ..machine.control import ActuatedForce
-    from ..orbit import LinearForce
-    from ..orbit.forces import find_equilibrium, linearize_force
-
     if not problem.schedule.is_constant:
         raise InputError("needs one speed, not a ramp", key="orbit.actuator")
-    if problem.pads:
-        raise InputError(
-            'goes with force = "linear" on tilting pads: its design knows the journal alone',
-            key="orbit.actuator",
-        )
     film, speed = problem.force, problem.schedule.speeds[0]
-    if isinstance(film, LinearForce):
-        rest = film.position(speed)
-    else:
-        rest = find_equilibrium(film, problem.static_load, speed)
-    linear = Coefficients(*linearize_force(film, *rest, speed), speed)
+    rest, linear = _at_rest(film, problem.static_load, speed)
     feedback = _design_feedback(settings, linear, mass, film.radial_clearance, load)
     limit = settings.force_limit
     limited = f"limited to {limit:g} N per axis" if math.isfinite(limit) else "without limit"
     return replace(
         problem,
-        force=ActuatedForce(film, feedback, rest),
+        force=_actuated(film, feedback, rest),
         equilibrium=rest,
         # as accurate as with the film alone
         relative_tolerance=problem.tolerance,

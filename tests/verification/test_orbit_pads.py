@@ -14,11 +14,13 @@ from rotorsim.bearing.dynamics import film_dynamics, rigid_eigenvalues
 from rotorsim.errors import InputError
 from rotorsim.film.pad_solution import solve_pads
 from rotorsim.model import LoadTarget, RigidPivot, SpherePivot, SpringPivot, ThermalSettings
+from rotorsim.model.orbit import ActuatorSettings
 from rotorsim.orbit import OrbitProblem, SpeedSchedule, simulate
 from rotorsim.orbit.equations import initial_state, right_hand_side
-from rotorsim.orbit.film_force import loaded_film
+from rotorsim.orbit.film_force import ActuatedSolvedFilm, loaded_film
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.rotor import Rotor
+from rotorsim.study.control import study_control
 
 SPEED, MASS = 900.0, 300.0
 PIVOTS = [RigidPivot(), SpringPivot(4e8), SpherePivot(radius=0.05)]
@@ -126,3 +128,27 @@ def test_inertias_that_no_pad_has_are_refused():
     pads = equal_pads(preload=0.5, offset=0.6, pivot=SpringPivot(4e8), mass=3.0, tilt_inertia=1e-9)
     with pytest.raises(InputError, match="too large"):
         loaded_film(pad_case(pads, LoadTarget(3000.0)), SPEED)
+
+
+@pytest.mark.parametrize("pivot", PIVOTS[:2], ids=lambda pivot: pivot.kind)
+def test_an_actuator_on_moving_pads_has_the_eigenvalues_of_its_design(pivot):
+    case = pads(pivot)
+    study = study_control(case, SPEED, MASS, revolutions=0)
+    assert study.controlled_eigenvalues[0].real < study.passive_eigenvalues[0].real < 0.0
+    run = problem(case)
+    run = replace(run, force=ActuatedSolvedFilm.beside(run.force, study.feedback))
+    found = np.linalg.eigvals(rates_by_differences(run))
+    for expected in study.controlled_eigenvalues:
+        assert np.abs(found - expected).min() < 1e-5 * abs(expected)
+
+
+def test_an_actuator_on_pads_gives_no_more_than_its_limit():
+    study = study_control(
+        pads(RigidPivot()),
+        SPEED,
+        MASS,
+        ActuatorSettings(force_limit=5.0, force_scale=300.0),
+        revolutions=1,
+    )
+    assert study.largest_force == pytest.approx(5.0)
+    assert study.controlled_orbit.status is OrbitStatus.COMPLETED

@@ -17,8 +17,6 @@ from ...errors import InputError
 from ...model import (
     Bearing,
     BushModel,
-    Cavitation,
-    Inception,
     InletModel,
     Lubricant,
     MeshSize,
@@ -355,13 +353,6 @@ def _check_kind(orbit: OrbitSettings, kinds: list[OrbitKind]) -> None:
 def _check_actuator(orbit: OrbitSettings, scenario: Scenario) -> None:
     """Refuse what the feedback, designed about one equilibrium at one speed, does not fit."""
     rotor_kind = "" if scenario.rotor is None else scenario.rotor.kind
-    film, linear = scenario.film, orbit.force is OrbitForce.LINEAR
-    free = film.inception is Inception.FREE
-    fixed = film.cavitation is not Cavitation.JFO
-    isothermal = set(scenario.thermal_models) == {ThermalModel.ISOTHERMAL}
-    plain = scenario.bearing.is_plain and scenario.bearing.is_symmetric
-    # from the third on: what `rotorsim.orbit.can_be_mapped` asks of a film
-    kept = 'with force = "film" needs a film whose force comes from a map: '
     for fits, message in (
         (
             not orbit.is_ramped,
@@ -371,19 +362,6 @@ def _check_actuator(orbit: OrbitSettings, scenario: Scenario) -> None:
         (
             orbit.static_load,
             "needs the static load, about whose equilibrium it acts; remove static_load",
-        ),
-        (linear or free, f'{kept}inception = "free" in [film]; or take force = "linear"'),
-        (
-            linear or fixed,
-            f'{kept}cavitation other than "jfo"; or take force = "linear"',
-        ),
-        (
-            linear or isothermal,
-            f'{kept}models = ["isothermal"] in [thermal]; or take force = "linear"',
-        ),
-        (
-            linear or plain,
-            f'{kept}a plain bore without grooves, lobes and tilt; or take force = "linear"',
         ),
     ):
         if not fits:
