@@ -14,6 +14,7 @@ from .film_commands import check, report, run, solve, table
 from .orbit_command import orbit
 from .output import WRONG_INPUT, Output, guarded
 from .stability_command import stability
+from .study_command import study
 from .transient_command import transient
 
 app: typer.Typer = typer.Typer(
@@ -55,6 +56,7 @@ for command in (
     control,
     orbit,
     transient,
+    study,
     report,
     explore,
     view,

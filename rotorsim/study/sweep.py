@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import itertools
 import json
 import multiprocessing
 import os
@@ -23,7 +24,7 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     wait,
 )
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from multiprocessing.connection import wait as wait_for_any
@@ -472,6 +473,39 @@ def map_on_processes(
             results.append(future.result())
             report(len(results))
     return results
+
+
+def stream(
+    function: Callable[[_Item], _Result],
+    items: Iterable[_Item],
+    executor: Executor | None = None,
+    workers: int | None = None,
+) -> Generator[_Result, None, None]:
+    """Results of `function` on every item as they come; few items are in work at a time.
+
+    executor, workers : As for `tabulate`.
+    Raises Exception: What `function` raised, and `BrokenExecutor` where a process was lost.
+    """
+    workers = workers or available_cores()
+    if executor is None and workers == 1:
+        yield from map(function, items)
+        return
+    waiting = iter(items)
+    with _one_thread_each(), nullcontext(executor) if executor else _pool(workers) as pool:
+        running: set[Future[_Result]] = set()
+        try:
+            while True:
+                with _anonymous_main():
+                    for item in itertools.islice(waiting, 4 * workers - len(running)):
+                        running.add(pool.submit(function, item))
+                if not running:
+                    return
+                finished, running = wait(running, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    yield future.result()
+        finally:
+            for future in running:
+                future.cancel()
 
 
 def _drain(

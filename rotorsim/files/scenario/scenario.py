@@ -22,6 +22,7 @@ from ...model.lubricant import oil
 from ...model.operating import Operating, StabilitySettings
 from ...model.orbit import OrbitSettings
 from ...model.pad_bearing import tilting_pad_bearing
+from ...model.study import StudySettings
 from ...model.tolerances import ToleranceSettings
 from ...model.transient import TransientSettings
 from ...rotor import Rotor
@@ -75,6 +76,7 @@ class Scenario:
     transient : TransientSettings or None
     stability : StabilitySettings or None
     tolerances : ToleranceSettings or None
+    study : StudySettings or None
     radial_clearances : tuple of float
         [m]
     thermal_models : tuple of ThermalModel
@@ -95,6 +97,7 @@ class Scenario:
     transient: TransientSettings | None = None
     stability: StabilitySettings | None = None
     tolerances: ToleranceSettings | None = None
+    study: StudySettings | None = None
     radial_clearances: Annotated[tuple[float, ...], NOT_IN_FILES] = ()
     thermal_models: Annotated[tuple[ThermalModel, ...], NOT_IN_FILES] = ()
     source: Annotated[Path | None, NOT_IN_FILES] = None
@@ -365,6 +368,16 @@ def _path(root: Any, name: str) -> tuple[str, ...]:
             return (*place, key)
     known = sorted({key for keys in tables.values() for key in keys})
     raise InputError(f"is no entry of a scenario{nearest(key, known)}", key=name)
+
+
+def entry_kind(root: Any, name: str) -> tuple[str, str | None]:
+    """Key of an entry with its table, and its kind of quantity (None: a plain number).
+
+    Raises InputError: There is no such entry.
+    """
+    path = _path(root, name)
+    entry = _entry(root, path)
+    return ".".join(path), None if entry is None else _kind(entry)
 
 
 def _entry(root: Any, path: tuple[str, ...]) -> Entry | None:

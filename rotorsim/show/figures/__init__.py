@@ -25,6 +25,7 @@ from .orbits import (
 )
 from .pads import pad_sections
 from .stability import campbell_diagram, eigenvalue_plot, root_locus, tolerance_histograms
+from .study import study_plot
 from .style import figure_bytes, save_figure
 from .transient import transient_plot
 
@@ -52,6 +53,7 @@ __all__ = [
     "spectrum_cascade",
     "spectrum_plot",
     "stability_map",
+    "study_plot",
     "thresholds_over_speed",
     "tolerance_histograms",
     "transient_plot",
