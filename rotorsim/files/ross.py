@@ -22,9 +22,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arguments import file_path
+from ..arrays import Array
 from ..atomic import write_text
 from ..bearing.table import CoefficientTable
 from ..bearing.table_data import COEFFICIENTS, LARGEST, SIGNS
@@ -33,8 +33,6 @@ from ..file_kinds import read_bytes
 from ..units import parse_quantity
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from ..bearing.table import CoefficientTable
 
 
@@ -91,7 +89,7 @@ def _in_degrees(load_direction: float) -> float:
     return round(math.remainder(math.degrees(load_direction), 360.0), 10)
 
 
-def _to_ross(matrices: NDArray[np.float64], load_direction: float = _WEIGHT) -> NDArray[np.float64]:
+def _to_ross(matrices: Array, load_direction: float = _WEIGHT) -> Array:
     """Turn (..., 2, 2) matrices from the load frame to the frame of ROSS.
 
     matrices : (..., 2, 2) array. Stiffness or damping.
@@ -106,15 +104,13 @@ def _to_ross(matrices: NDArray[np.float64], load_direction: float = _WEIGHT) -> 
     return turn @ matrices @ turn.T
 
 
-def _from_ross(
-    matrices: NDArray[np.float64], load_direction: float = _WEIGHT
-) -> NDArray[np.float64]:
+def _from_ross(matrices: Array, load_direction: float = _WEIGHT) -> Array:
     """Inverse of `_to_ross`."""
     turn = _turn(load_direction)
     return turn.T @ matrices @ turn
 
 
-def _turn(load_direction: float) -> NDArray[np.float64]:
+def _turn(load_direction: float) -> Array:
     """(2, 2): components in the frame of ROSS from those in the load frame."""
     degrees = _in_degrees(load_direction)
     cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
@@ -355,9 +351,7 @@ def _axis(bearing: dict[str, Any], source: Path) -> str | None:
     return "speed" if speed else "frequency" if frequency else None
 
 
-def _column(
-    bearing: dict[str, Any], name: str, count: int | None, source: Path
-) -> NDArray[np.float64]:
+def _column(bearing: dict[str, Any], name: str, count: int | None, source: Path) -> Array:
     """Numbers of a key: `count`, or one that holds for all."""
     value = bearing.get(name, 0.0)
     numbers = value if isinstance(value, list) else [value]
@@ -391,9 +385,9 @@ class Curve:
 
     name: str
     facts: tuple[str, ...]
-    speed: NDArray[np.float64]
-    stiffness: NDArray[np.float64]
-    damping: NDArray[np.float64]
+    speed: Array
+    stiffness: Array
+    damping: Array
     constant: bool = False
 
 

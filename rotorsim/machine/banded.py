@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Booleans, Indices
+
 
 @dataclass(frozen=True, eq=False)
 class BandForm:
@@ -19,11 +21,11 @@ class BandForm:
     width : Number of diagonals on each side of the main one.
     """
 
-    place: NDArray[np.intp]
+    place: Indices
     width: int
 
     @classmethod
-    def of(cls, pattern: NDArray[np.bool_]) -> BandForm:
+    def of(cls, pattern: Booleans) -> BandForm:
         """Band form of matrices that are zero where `pattern` (n, n) is False."""
         from scipy.sparse import csr_array
         from scipy.sparse.csgraph import reverse_cuthill_mckee
@@ -40,9 +42,7 @@ class BandForm:
         """Whether the band is worth while."""
         return 6 * self.width < self.place.size
 
-    def entry(
-        self, row: NDArray[np.intp], column: NDArray[np.intp]
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    def entry(self, row: Indices, column: Indices) -> tuple[Indices, Indices]:
         """Indices in a band of the entries of a matrix."""
         i, j = self.place[row], self.place[column]
         return self.width + i - j, j

@@ -8,8 +8,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+from ..arrays import Array, Booleans, ComplexArray, Indices
+
 FORWARD = 0.1
 """Ratio of areas, orbit to circle, above which a whirl counts as forward (or backward)."""
 _MOVING = 0.05
@@ -42,7 +42,7 @@ class Modes:
     eigenvalues: ComplexArray
     accuracy: Array
     shapes: ComplexArray
-    smooth: NDArray[np.bool_]
+    smooth: Booleans
     planes: tuple[tuple[int, int], ...] = ((0, 1),)
 
     @property
@@ -51,7 +51,7 @@ class Modes:
         return np.where(self.undamped, 0.0, self.eigenvalues.real)
 
     @property
-    def undamped(self) -> NDArray[np.bool_]:
+    def undamped(self) -> Booleans:
         """Whether the real part is below its own accuracy: the mode neither grows nor decays."""
         return np.abs(self.eigenvalues.real) <= self.accuracy
 
@@ -66,7 +66,7 @@ class Modes:
         return np.where(np.isneginf(largest), 0.0, largest)
 
     @property
-    def least_stable(self) -> NDArray[np.intp]:
+    def least_stable(self) -> Indices:
         """Branch of largest growth rate, those without damping left out, (n,)."""
         return np.where(self.undamped, -np.inf, self.eigenvalues.real).argmax(axis=-1)
 

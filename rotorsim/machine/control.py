@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Protocol
 
 import control
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from ..arguments import finite_number
+from ..arrays import Array, ComplexArray
 from ..bearing.interpolation import Coefficients
 from ..errors import InputError
 from ..rotor import Rotor
@@ -22,8 +23,6 @@ if TYPE_CHECKING:
     from ..bearing.interpolation import Coefficients
 
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _NO_GAIN = 1e9
 """Factors of a loop gain above this are no factors any more."""
 _MOST_STATES = 12

@@ -6,14 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..rotor import Rotor
 from .machine import Machine
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _FORWARD = {"x": 1.0, "y": -1j, "theta_x": 1j, "theta_y": 1.0}
 """Unknowns of a forward circular motion r: y = -i x; theta_x = -dy/dz = i r', theta_y = r'."""
 

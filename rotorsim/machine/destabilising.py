@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .branches import Modes
@@ -19,7 +19,6 @@ from .spectrum import Eigenmodes, MachineSpectrum
 from .support import cross_stiffness
 from .tracking import track_modes
 
-Array = NDArray[np.float64]
 _REACH = 10.0
 """Multiple of the anticipated stiffness up to which the decrement is followed (API 617)."""
 _MOST = 1e4

@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, ComplexArray
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..model.machine import Clearance
 from ..rotor import Rotor, with_unbalance
@@ -24,7 +24,6 @@ from .peaks import Peak, ProbeResponse, node_at
 from .response import UnbalanceResponse
 from .thresholds import critical_speeds
 
-Array = NDArray[np.float64]
 _CRITICAL_AMPLIFICATION = 2.5
 """Amplification factor from which a peak is a critical speed."""
 _VIBRATION = 25.4e-6
@@ -227,7 +226,6 @@ def _largest(speed: Array, values: Array, between: tuple[float, float]) -> float
     return float(found.max()) if found.size else None
 
 
-ComplexArray = NDArray[np.complex128]
 _ANTINODE = 0.3
 """Of the largest deflection, from which a local maximum is excited."""
 _OVERHUNG = 0.1
@@ -353,7 +351,7 @@ def _planes(
     )  # fmt: skip
 
 
-def _antinodes(line: Array, within: NDArray[np.bool_]) -> list[int]:
+def _antinodes(line: Array, within: Booleans) -> list[int]:
     """Local maxima of the deflection's magnitude, ends included."""
     index = np.flatnonzero(within)
     size = np.abs(line[index])

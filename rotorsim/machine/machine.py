@@ -7,17 +7,15 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, ComplexArray, Indices
 from ..errors import InputError
 from ..rotor import Rotor
 from ..rotor.rotor import MATRICES
 from .banded import BandForm
 from .matrices import first_order
 from .support import Matrices, Support, common_speeds
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +88,7 @@ class Machine:
         return common_speeds([mount.support for mount in self.mounts])
 
     @cached_property
-    def places(self) -> tuple[NDArray[np.intp], ...]:
+    def places(self) -> tuple[Indices, ...]:
         """Indices of each support's unknowns; its own ones follow the rotor's."""
         places, size = [], self.rotor.size
         for mount in self.mounts:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array, Booleans
 from ..bearing.dynamics import FilmDynamics, rigid_growth_rates
 from ..bearing.table import CoefficientTable
 from ..bearing.whirl import rigid_thresholds, routh_coefficients
@@ -136,7 +137,7 @@ def stability_map(
     return StabilityMap(dataset)
 
 
-def _axis(values: ArrayLike, name: str) -> NDArray[np.float64]:
+def _axis(values: ArrayLike, name: str) -> Array:
     axis = np.atleast_1d(np.asarray(values, dtype=float))
     if axis.ndim != 1 or not axis.size or not np.all(np.isfinite(axis)) or not np.all(axis > 0.0):
         raise InputError("must be one or more numbers above 0", key=name, value=values)
@@ -145,9 +146,7 @@ def _axis(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return axis
 
 
-def _coefficients(
-    table: CoefficientTable, speeds: NDArray[np.float64] | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _coefficients(table: CoefficientTable, speeds: Array | None) -> tuple[Array, Array, Array]:
     """K, C (..., n_speed, 2, 2) and load (..., n_speed); NaN where nothing converged."""
     shape = tuple(table.dataset.sizes[d] for d in table.choices)
     at = table.speeds if speeds is None else speeds
@@ -163,11 +162,11 @@ def _coefficients(
 
 def _dataset(
     table: CoefficientTable,
-    speeds: NDArray[np.float64],
-    masses: NDArray[np.float64],
-    stiffness: NDArray[np.float64],
-    damping: NDArray[np.float64],
-    load: NDArray[np.float64],
+    speeds: Array,
+    masses: Array,
+    stiffness: Array,
+    damping: Array,
+    load: Array,
 ) -> xr.Dataset:
     import xarray as xr
 
@@ -224,9 +223,7 @@ def _dataset(
     return xr.Dataset(data, coords, dict(table.dataset.attrs))
 
 
-def _driven_rates(
-    stiffness: NDArray[np.float64], damping: NDArray[np.float64], masses: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+def _driven_rates(stiffness: Array, damping: Array, masses: Array) -> tuple[Array, Booleans]:
     """Growth rates (..., n_mass) without modes below their own accuracy, and where there are such.
 
     As `Eigenmodes.leading` has it: 0 where no mode is damped or driven.
@@ -246,16 +243,16 @@ def _driven_rates(
     return rates, undamped
 
 
-def _sign_verdict(rates: NDArray[np.float64]) -> NDArray[np.int_]:
+def _sign_verdict(rates: Array) -> NDArray[np.int_]:
     return np.select([rates < 0.0, rates > 0.0], [STABLE, UNSTABLE], UNDAMPED)
 
 
 def _put_full(
     table: CoefficientTable,
-    speeds: NDArray[np.float64],
-    masses: NDArray[np.float64],
-    known: NDArray[np.bool_],
-    load: NDArray[np.float64],
+    speeds: Array,
+    masses: Array,
+    known: Booleans,
+    load: Array,
     data: dict[str, tuple[tuple[str, ...], NDArray, dict]],
 ) -> None:
     """Put in the verdicts on rotor and pads together, in place of those on the rotor alone."""

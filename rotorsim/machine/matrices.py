@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Indices
 from ..errors import InputError
 
-Array = NDArray[np.float64]
 _SINGULAR = 1e12
 """Condition number from which the damping of massless unknowns counts as singular."""
 
@@ -33,7 +33,7 @@ def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> A
     return a
 
 
-def massive_unknowns(mass: Array) -> NDArray[np.intp]:
+def massive_unknowns(mass: Array) -> Indices:
     """Indices of the unknowns with inertia, of (..., n, n) mass matrices."""
     return np.flatnonzero(np.any(mass != 0.0, axis=-1).reshape(-1, mass.shape[-1]).any(axis=0))
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .branches import Modes
@@ -14,8 +15,6 @@ from .machine import Machine
 from .spectrum import MachineSpectrum, all_eigenmodes
 from .tracking import track_modes
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _FEWEST = 12
 """Pairs of modes of a large machine, at least."""
 _REACH = 3.0

@@ -10,14 +10,11 @@ from typing import Any
 
 import control
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .reduction import probing_frequencies, response
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model.machine import Probe
 from ..rotor import Rotor
@@ -17,8 +17,6 @@ from .machine import Machine
 from .response import unbalance_response
 from .thresholds import critical_speeds
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _HALF_POWER = 0.5**0.5
 """Of the peak: where the amplification factor's speeds N_1 and N_2 are taken (API 684)."""
 _POINTS = 400

@@ -6,20 +6,18 @@ import cmath
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, ComplexArray, Indices
 from ..compiled import compiled
 from ..errors import InputError
 from .matrices import state_matrix
 
-Array = NDArray[np.float64]
 _BLOCK = 65536
 """Systems handed to the dense eigenvalue solver at once; bounds its memory."""
 
 
-def eigenvalues(
-    stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike
-) -> NDArray[np.complex128]:
+def eigenvalues(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> ComplexArray:
     """Eigenvalues of m x'' + C x' + K x = 0 [rad/s], shape (..., 4), in no particular order.
 
     Parameters are those of `state_matrix`. Entries that are not finite give NaN.
@@ -105,7 +103,7 @@ def _check_mass(mass: Array) -> None:
 
 
 def _solve_densely(
-    rate: Array, where: NDArray[np.intp], stiffness: Array, damping: Array, mass: Array
+    rate: Array, where: Indices, stiffness: Array, damping: Array, mass: Array
 ) -> None:
     for start in range(0, where.size, _BLOCK):
         part = slice(start, start + _BLOCK)

@@ -13,13 +13,12 @@ from typing import Any
 
 import control
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _DECAYING = 1e-9
 """Of the largest eigenvalue: slower modes count as unstable and are kept."""
 _ABOUT = np.concatenate([-np.geomspace(10.0, 0.1, 9), [0.0], np.geomspace(0.1, 10.0, 9)])

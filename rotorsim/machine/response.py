@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .machine import Machine
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _AT_ONCE = 64
 """Speeds whose matrices are held at once; bounds the memory."""
 

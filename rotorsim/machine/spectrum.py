@@ -10,13 +10,12 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from .banded import BandForm
 from .machine import Machine
 from .matrices import first_order
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _MatrixOf = Callable[[float], Array]
 _ROUNDINGS = 10.0
 """Size of the error of an eigenvalue solver and of the matrices, in roundings of their norm."""

@@ -10,13 +10,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError
 from ..rotor import Rotor
 
-Array = NDArray[np.float64]
 Law = Callable[[Array], tuple[Array, Array]]
 """Load (2,) [N] on a support to the journal's displacement (2,) [m] and its derivative
 (2, 2) [m/N]."""

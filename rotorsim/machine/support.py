@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array, ComplexArray
 from ..bearing.operating_point import kept_throughout
 from ..bearing.table_data import PAD_MATRICES
 from ..errors import InputError, OutOfRangeError
@@ -20,8 +21,6 @@ if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
     from ..bearing.table import CoefficientTable
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 Matrices = tuple[Array, Array, Array]
 _JOURNAL = ("x", "y", "theta_x", "theta_y")
 """Unknowns of a bearing that are its node's."""

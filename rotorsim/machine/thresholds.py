@@ -9,15 +9,14 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..threads import on_one_blas_thread
 from .branches import Modes
 from .machine import Machine
 from .modes import machine_spectrum, modes
 from .spectrum import Eigenmodes, Spectrum
 
-Array = NDArray[np.float64]
 CRITICAL_DAMPING = 0.5**0.5
 """Damping ratio from which an unbalance response has no peak: no critical speed."""
 

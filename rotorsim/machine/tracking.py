@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import ComplexArray
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .branches import Modes
 from .spectrum import Eigenmodes, Spectrum
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _SAME_VALUE = 1e-6
 """Relative distance of eigenvalues that count as one multiple eigenvalue."""
 _SMOOTH_MAC = 0.9

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Booleans
 from ..errors import InputError, RotorsimError
 
-Array = NDArray[np.float64]
 _Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 
 
@@ -87,7 +87,7 @@ class Propagation:
         """
         return self._share(self._output(output) > limit)
 
-    def _share(self, true: NDArray[np.bool_]) -> tuple[float, float]:
+    def _share(self, true: Booleans) -> tuple[float, float]:
         """Share of the samples without a failure that are true, and its standard error."""
         keep = np.ones(true.size, dtype=bool)
         keep[[i for i, _ in self.failures]] = False

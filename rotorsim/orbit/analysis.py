@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, ComplexArray
 from ..errors import InputError
 from .orbit import Orbit, OrbitStatus
 from .spectrum import (
@@ -20,7 +20,6 @@ from .spectrum import (
     whirl_frequency_ratio,
 )
 
-Array = NDArray[np.float64]
 _SMALL_MOTION = 0.1
 """Distance from equilibrium over clearance up to which a growth rate is measured."""
 WHIRLING = 0.05
@@ -127,7 +126,7 @@ def _swing(orbit: Orbit) -> float:
     return float(np.sqrt(np.sum(weights * np.abs(z - mean) ** 2)))
 
 
-def _middle(orbit: Orbit) -> tuple[complex, NDArray[np.complex128], Array]:
+def _middle(orbit: Orbit) -> tuple[complex, ComplexArray, Array]:
     """Mean of z = x + i y, z, and the weights: smooth, for windows hold no whole whirl cycles."""
     count = orbit.t.size
     weights = (1.0 - np.cos(2.0 * np.pi * (np.arange(count) + 0.5) / count)) / count
@@ -309,7 +308,6 @@ def _subsynchronous(rows: Cascade) -> np.ndarray:
     return np.where((rows.order > low) & (rows.order < high), rows.amplitude, 0.0)
 
 
-ComplexArray = NDArray[np.complex128]
 _SAMPLES_PER_REVOLUTION = 16
 _DELAYS = 32
 _COLUMNS = 2000
@@ -331,7 +329,7 @@ class Modes:
 
     eigenvalues: ComplexArray
     amplitudes: ComplexArray
-    synchronous: NDArray[np.bool_]
+    synchronous: Booleans
 
 
 @dataclass(frozen=True)

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..film.geometry import bore_offset
 from ..model import Bearing
 from ..model.bearing import angle_between
 
-Array = NDArray[np.float64]
 _ANGLES = 720
 _BLOCK = 4096
 """Positions looked at together: bounds the memory."""

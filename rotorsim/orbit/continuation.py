@@ -12,16 +12,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, ComplexArray, Indices
 from ..compiled import compiled
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .motion import static_position
 from .system import MotionSystem, Plain, derivatives, force_on
-
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 _HARMONICS = 7
 _MOMENTS = 64
@@ -50,7 +47,7 @@ class Branch:
     frequency: Array
     amplitude: Array
     least_film: Array
-    stable: NDArray[np.bool_]
+    stable: Booleans
     threshold: float | None
     names: tuple[str, ...]
     message: str
@@ -99,7 +96,7 @@ class _Balance:
             raise InputError("floating rings that turn cannot be followed", key="support.ring")
         self.system, self.harmonics, self.forced = system, harmonics, forced
         touched = {i for link in system.links for i in (*link.inner, *link.outer) if i >= 0}
-        self.touched: NDArray[np.intp] = np.array(sorted(touched), dtype=np.intp)
+        self.touched: Indices = np.array(sorted(touched), dtype=np.intp)
         self.held = np.arange(system.size)
         self.count = 2 * harmonics + 1
         turn = 2.0 * np.pi * np.arange(_MOMENTS) / _MOMENTS
@@ -199,7 +196,7 @@ class _Balance:
                 least = min(least, link.force.radial_clearance - reach)
         return np.array(sizes), least
 
-    def multipliers(self, c: Array, frequency: float, speed: float) -> NDArray[np.complex128]:
+    def multipliers(self, c: Array, frequency: float, speed: float) -> ComplexArray:
         """Floquet's multipliers of the whole machine, the one nearest to 1 of a free cycle less."""
         whole, _ = self.plains(speed)
         n, waves = self.system.size, c.reshape(self.count, -1)
@@ -229,7 +226,7 @@ class _Balance:
 
 def threshold(
     system: MotionSystem, speeds: Array, guess: Array
-) -> tuple[float, float, Array, NDArray[np.complex128]] | None:
+) -> tuple[float, float, Array, ComplexArray] | None:
     """First speed at which the static position becomes unstable.
 
     Returns

@@ -10,8 +10,8 @@ import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..compiled import compiled
 from ..errors import InputError
 from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
@@ -21,7 +21,6 @@ from .forces import CompilableForce, CompiledForce
 from .kernels import film_force, film_force_series, shaft
 from .problem import OrbitProblem
 
-Array = NDArray[np.float64]
 Rates = Callable[[float, Array], Array]
 FilmSeries = Callable[[Array, Array], Array]
 Tangent = Callable[[float, Array], Rates]

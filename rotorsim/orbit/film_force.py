@@ -10,9 +10,10 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
+from ..arrays import Array, Booleans, ComplexArray
 from ..bearing.dynamics import pad_mass
 from ..bearing.interpolation import Coefficients
 from ..bearing.operating_point import condensed
@@ -39,8 +40,6 @@ from ..status import SolveStatus
 from .film_map import MAPPED, Progress, film_force_map
 from .force_map import FilmMapForce
 from .forces import BearingForce
-
-Array = NDArray[np.float64]
 
 _FIELD_SPEEDS, _SLOWEST_FIELD = 7, 0.1
 """Of heated films of a run through the speeds, and the slowest over the highest."""
@@ -115,7 +114,7 @@ class SolvedFilmForce:
     rest: Array
     name: str = "film"
     others: tuple[tuple[float, LayerIntegrals], ...] = ()
-    _full: NDArray[np.bool_] | None = field(default=None, init=False, repr=False)
+    _full: Booleans | None = field(default=None, init=False, repr=False)
 
     @property
     def radial_clearance(self) -> float:
@@ -216,7 +215,7 @@ class SolvedFilmForce:
         felt = condensed(law, 2)
         return Coefficients(np.real(felt), np.imag(felt) / speed, speed)
 
-    def eigenvalues(self, mass: float, speed: float) -> NDArray[np.complex128]:
+    def eigenvalues(self, mass: float, speed: float) -> ComplexArray:
         """Of a rigid rotor [kg] and the pads at rest [1/s], the least stable one first."""
         rest = self._turn @ self.rest
         _, stiffness, damping = self.linear(rest, np.zeros_like(rest), speed)

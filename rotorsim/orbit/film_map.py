@@ -30,6 +30,7 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..atomic import replacing
 from ..errors import InputError
 from ..film.geometry import film_geometry
@@ -51,7 +52,6 @@ from ..model import (
 )
 from .force_map import FilmMapForce, ForceMap
 
-Array = NDArray[np.float64]
 Progress = Callable[[int, int], None]
 
 MAPPED = (Cavitation.REYNOLDS, Cavitation.HALF_SOMMERFELD, Cavitation.FULL_SOMMERFELD)
@@ -256,7 +256,7 @@ class _RestingFilm:
         self.layers = isoviscous_layers(self.problem.mesh.shape, 1.0)
         # F = 2 mu |v_s| L (R/c)^3 W with mu = |v_s| = R = 1
         self.scale = 2.0 * case.bearing.length / _CLEARANCE**3
-        self.full: NDArray[np.bool_] | None = None
+        self.full: Booleans | None = None
 
     @classmethod
     def of(

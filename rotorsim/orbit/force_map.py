@@ -27,14 +27,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
+from ..arrays import Array
 from ..errors import InputError
 from . import kernels
 from .forces import CompiledForce, squeeze_force_scale
 
-Array = NDArray[np.float64]
 _Impedance = Callable[[float, float], tuple[float, float]]
 """(eccentricity ratio, alpha [rad]) -> (radial, tangential) in units of 2 mu |v_s| L (R/c)^3."""
 _MIRRORED_ROWS = 8

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 from scipy.optimize import root
 
+from ..arrays import Array
 from ..errors import InputError
 from . import kernels
 
-Array = NDArray[np.float64]
 _CoefficientsBySpeed = Callable[[float], tuple[ArrayLike, ArrayLike]]
 _PositionBySpeed = Callable[[float], tuple[float, float]]
 

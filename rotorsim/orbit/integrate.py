@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model.loads import BaseMotion, HarmonicForce
 from .analysis import recognise
@@ -31,7 +31,6 @@ from .forces import ActuatedFilm, LinearForce, find_equilibrium
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import Method, OrbitProblem
 
-Array = NDArray[np.float64]
 _CHUNK_REVOLUTIONS = 32
 
 

@@ -18,11 +18,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..compiled import compiled
-
-Array = NDArray[np.float64]
 
 LINEAR, SHORT_BEARING, FORCE_MAP, SHORT_FULL, STOP = 0, 1, 2, 3, 4
 """Force models the kernel knows."""

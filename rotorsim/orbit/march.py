@@ -16,11 +16,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..compiled import compiled
 from .kernels import shaft
 from .system import Plain, derivatives, force_on, least_film
-
-Array = NDArray[np.float64]
 
 DONE, TOUCHED, STUCK = 0, 1, 2
 

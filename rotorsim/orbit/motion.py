@@ -11,16 +11,14 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .march import DONE, TOUCHED, march, repeat
 from .orbit import Orbit, OrbitEvent, OrbitStatus
 from .problem import SpeedSchedule
 from .system import Link, MotionSystem, Plain, derivatives, force_on
-
-Array = NDArray[np.float64]
 
 _CHUNK_REVOLUTIONS = 32
 _TOLERANCE = 1e-5
@@ -172,7 +170,7 @@ class Motion:
         """Name of the station of a film."""
         return next(one.name for one in self.stations if one.link == link)
 
-    def displacement(self, places: Sequence[int] | NDArray[np.intp]) -> Array:
+    def displacement(self, places: Sequence[int] | Indices) -> Array:
         """Displacements (m, k) of unknowns of the whole machine [m]."""
         rows = np.asarray(places, dtype=np.intp)
         system = self.problem.system

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model import Bearing
 from ..model.loads import Load
@@ -18,8 +18,6 @@ from ..rotor.rotor import MATRICES
 from .clearance import contact_boundary, minimum_film
 from .film_force import SolvedFilmForce
 from .forces import BearingForce, LinearForce
-
-Array = NDArray[np.float64]
 
 
 class Method(StrEnum):

@@ -10,14 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from .orbit import Orbit
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _HARMONICS = np.arange(-4, 5)
 _MAX_REVOLUTIONS = 256
 

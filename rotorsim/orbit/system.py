@@ -21,13 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ..arrays import Array, ComplexArray, Indices
 from ..compiled import compiled
 from ..errors import InputError
 from .forces import BearingForce, CompilableForce
 from .kernels import STOP, film_force
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _SPEED_INTERVALS = 256
 GROUND = (-1, -1)
 
@@ -98,7 +97,7 @@ class LinearBlock:
     law : Speed [rad/s] to f (m,), K and C (m, m).
     """
 
-    unknowns: NDArray[np.intp]
+    unknowns: Indices
     law: Callable[[float], tuple[Array, Array, Array]]
 
     def row(self, speed: float) -> Array:
@@ -296,7 +295,7 @@ class MotionSystem:
         return before, np.column_stack(columns[:2]), np.column_stack(columns[2:])
 
     @staticmethod
-    def _spread(link: Link, pull: Array) -> tuple[NDArray[np.intp], Array]:
+    def _spread(link: Link, pull: Array) -> tuple[Indices, Array]:
         """Where the forces of a link act, and how large they are."""
         at, sizes = [*link.inner, *link.pads], [*pull]
         if link.outer[0] >= 0:

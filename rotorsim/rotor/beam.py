@@ -12,14 +12,13 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model.shaft import STEEL, Coupling, Disc, Material, Section
 from ..threads import on_one_blas_thread
 from .rotor import Node, Rotor
 
-Array = NDArray[np.float64]
 _MIN_ELEMENTS, _MAX_ELEMENTS = 20, 100
 """Of the whole shaft, where the mesh rule decides."""
 _SAME_PLACE = 1e-6

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from .rotor import Rotor
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +23,7 @@ class Reduction:
     """
 
     basis: Array
-    kept: NDArray[np.intp]
+    kept: Indices
     frequencies: Array
 
 

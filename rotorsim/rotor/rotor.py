@@ -11,11 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arguments import above_zero, not_negative
+from ..arrays import Array, ComplexArray, Indices
 from ..errors import InputError
 from ..model.entries import NEEDED, NOT_IN_FILES, Damping, Example, Mass, Stiffness, Unbalance
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "circulatory")
 _SYMMETRY = 1e-8
 """Relative size of an asymmetry that counts as an error of the input."""
@@ -165,7 +164,7 @@ class Rotor:
         return self.mass.shape[0]
 
     @cached_property
-    def first_unknown(self) -> NDArray[np.intp]:
+    def first_unknown(self) -> Indices:
         """Index of each node's x, (n_nodes,); its y follows."""
         counts = [len(node.unknowns) for node in self.nodes]
         return np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.intp)

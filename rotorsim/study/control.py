@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import ComplexArray
 from ..bearing.interpolation import Coefficients
 from ..bearing.whirl import WhirlThreshold, rigid_threshold
 from ..errors import InputError
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from ..orbit import Orbit, OrbitProblem
     from ..orbit.film_force import LoadedFilm
     from ..orbit.forces import BearingForce
-
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,8 +46,8 @@ class ControlStudy:
     disturbance: float
     equilibrium: tuple[float, float]
     passive: WhirlThreshold
-    passive_eigenvalues: NDArray[np.complex128]
-    controlled_eigenvalues: NDArray[np.complex128]
+    passive_eigenvalues: ComplexArray
+    controlled_eigenvalues: ComplexArray
     system: control.StateSpace
     feedback: StateFeedback
     margins: tuple[LoopMargins, LoopMargins]
@@ -191,7 +189,7 @@ def _run(
     )
 
 
-def _sorted(values: NDArray) -> NDArray[np.complex128]:
+def _sorted(values: NDArray) -> ComplexArray:
     found = np.asarray(values, dtype=complex)
     return found[np.argsort(np.real(-found), kind="stable")]
 

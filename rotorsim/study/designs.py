@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..atomic import write_text
 from ..errors import InputError, RotorsimError
 from ..file_kinds import is_missing
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model.study import Range
 
-Array = NDArray[np.float64]
 RESULTS = (
     "threshold_speed", "growth_rate", "critical_mass", "eccentricity_ratio", "load",
     "min_film_thickness", "max_pressure", "max_temperature", "power_loss", "side_flow",
@@ -109,7 +108,7 @@ class Study:
         return found.loc[undominated(goals)].sort_values(by="power_loss")
 
 
-def undominated(goals: Array) -> NDArray[np.bool_]:
+def undominated(goals: Array) -> Booleans:
     """Whether no other row is as low in every column and lower in one, (n,)."""
     order = np.lexsort(goals.T[::-1])
     kept = np.zeros(len(goals), dtype=bool)

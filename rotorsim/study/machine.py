@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..bearing.interpolation import CoefficientInterpolator
 from ..bearing.operating_point import OperatingPoint
 from ..errors import InputError
@@ -46,8 +46,6 @@ from ..rotor import Rotor
 from .planes import changed
 from .rings import centred_damping, ring_law, ring_support
 from .sweep import Progress, sweep_points
-
-Array = NDArray[np.float64]
 
 _GIVEN = "given"
 """Name of the thermal model of a machine without films."""

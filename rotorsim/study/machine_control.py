@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..files.parameters import place_named
@@ -34,8 +34,6 @@ from ..model.orbit import Design
 if TYPE_CHECKING:
     import control
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _STEPS = 256
 """Of a revolution in time, at least."""
 _LEAST_ERROR = 1e-8

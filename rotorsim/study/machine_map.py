@@ -10,8 +10,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..files.parameters import PARAMETERS, Parameter, Variant, held_values, parameter
@@ -35,7 +35,6 @@ from .sweep import Progress, available_cores, map_on_processes, sweep_points
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
 
-Array = NDArray[np.float64]
 _CELLS = 25
 _SPANS = {
     "radial_clearance": np.linspace(0.7, 1.4, 7),
@@ -351,7 +350,7 @@ class _Films:
 
     def at(
         self, job: _Job, nodes: Sequence[Array], along: Sequence[Array],
-        kept: tuple[int, NDArray[np.intp]] | None = None,
+        kept: tuple[int, Indices] | None = None,
     ) -> tuple[_Grid, tuple[SupportState, ...]]:  # fmt: skip
         """Matrices over the values `along`, from those at `nodes`, and the supports' loads.
 

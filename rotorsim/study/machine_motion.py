@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..film.geometry import rotation
@@ -53,7 +53,6 @@ if TYPE_CHECKING:
     from ..model.machine import Damper, SupportEntry
     from .machine import MachineResult
 
-Array = NDArray[np.float64]
 
 _REVOLUTIONS = 60
 _MAX_SAMPLES = 1_000_000
@@ -549,7 +548,7 @@ class _Builder:
         ]
 
     def _block(
-        self, linear: Machine, place: NDArray[np.intp], seals: dict[str, Array]
+        self, linear: Machine, place: Indices, seals: dict[str, Array]
     ) -> LinearBlock | None:
         """Linear supports about their static positions over speed; seals about where they rest."""
         loads = [node_at(self.rotor, entry.at) for entry in self.machine.load]
@@ -689,7 +688,7 @@ class _Builder:
 
     def _reduction_error(
         self, system: MotionSystem, rest: Array, still: Array, whole: dict[str, Array],
-        place: NDArray[np.intp],
+        place: Indices,
     ) -> float:  # fmt: skip
         """Largest relative change of an eigenvalue below the highest excitation."""
         from scipy.linalg import eigvals
@@ -1014,7 +1013,7 @@ def _padded_vector(vector: Any, size: int) -> Any:
     return np.concatenate([vector, np.zeros(size - len(vector), dtype=vector.dtype)])
 
 
-def _moved(link: Link, place: NDArray[np.intp]) -> Link:
+def _moved(link: Link, place: Indices) -> Link:
     """Link between the reduced unknowns."""
 
     def at(pair: tuple[int, int]) -> tuple[int, int]:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Indices
 from ..machine.branches import Modes
 from ..rows import RPM, ZERO_CELSIUS, number
 from .lateral import LateralStudy
@@ -54,7 +54,7 @@ def least_stable_rows(results: dict[str, MachineResult], every: bool = False) ->
         yield Rows(f"Least stable mode{reach}{_suffix(results, model)}", head, rows)
 
 
-def least_stable_below(found: Modes) -> NDArray[np.intp]:
+def least_stable_below(found: Modes) -> Indices:
     """Branch of largest growth rate up to three times the highest speed, or unstable, (n,).
 
     Bending modes far above the speeds are hardly damped and hide those that films decide.

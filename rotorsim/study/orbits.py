@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arguments import refuse_path
+from ..arrays import Array, Indices
 from ..bearing.operating_point import OperatingPoint
 from ..errors import InputError
 from ..model.orbit import OrbitForce, SpeedRamp
@@ -288,8 +288,6 @@ def _static_position(
     return position
 
 
-Array = NDArray[np.float64]
-
 _FRAMES_PER_REVOLUTION = 8
 _FIRST_REVOLUTIONS, _LAST_REVOLUTIONS = 8, 32
 """At the run's beginning and end, shown in full."""
@@ -417,7 +415,7 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
     return frames
 
 
-def _shown_samples(orbit: Orbit) -> NDArray[np.intp]:
+def _shown_samples(orbit: Orbit) -> Indices:
     """Samples at which the film is shown: every move at both ends of the run, few between."""
     turn = orbit.samples_per_revolution
     step = max(1, turn // _FRAMES_PER_REVOLUTION)

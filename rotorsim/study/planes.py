@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..errors import InputError
 from ..model import (
     Bearing,
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     from .sweep import Progress
 
 
-Array = NDArray[np.float64]
 _FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
 """What the film must be solved again for."""
 _DIMENSIONS = ("speed", "mass", *_FILM_DIMENSIONS)
@@ -90,7 +89,7 @@ class Plane:
         return self.values("growth_rate", model)
 
     @property
-    def destabilised_by_heating(self) -> NDArray[np.bool_] | None:
+    def destabilised_by_heating(self) -> Booleans | None:
         """Where only heating makes the rotor unstable, (n_x, n_y); None with one model."""
         if "destabilised_by_heating" not in self.dataset:
             return None

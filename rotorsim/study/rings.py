@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import root_scalar
 
+from ..arrays import Array
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError
 from ..machine.statics import Law
@@ -17,8 +17,6 @@ from ..model.machine import Damper, FloatingRing
 from ..orbit.film_map import film_force_map
 from ..orbit.force_map import FilmMapForce
 from ..orbit.forces import BearingForce, ShortBearingForce, find_equilibrium, linearize_force
-
-Array = NDArray[np.float64]
 
 _SLOWEST = 1e-4
 """Of a ring, over the shaft's speed."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..files.scenario import Scenario
 from ..machine.machine import Machine
@@ -18,9 +18,6 @@ from ..model import Case
 from ..threads import on_one_blas_thread
 from .machine import MachineAnalysis, MachineResult, SupportState, Variant, film_support
 from .sweep import sweep_points
-
-_Array = NDArray[np.float64]
-_ComplexArray = NDArray[np.complex128]
 
 _SHARE, _KELVIN, _PRELOAD = 0.1, 5.0, 0.1
 """Changes that are compared: of clearance, load, length, stiffness; temperature; preload."""
@@ -73,11 +70,11 @@ class _Mode:
     machine: Machine
     speed: float
     value: complex
-    right: _ComplexArray
-    left: _ComplexArray
+    right: ComplexArray
+    left: ComplexArray
     slope: float | None
 
-    def effects(self, change: _ComplexArray, places: Any) -> tuple[float, float | None]:
+    def effects(self, change: ComplexArray, places: Any) -> tuple[float, float | None]:
         """Changes of growth rate and threshold by a change of Z at some unknowns."""
         mass, damping, _ = self.machine.matrices(self.speed)
         weight = self.left.conj() @ (2.0 * self.value * mass + damping) @ self.right
@@ -136,7 +133,7 @@ def _of_films(result: MachineResult, mode: _Mode, workers: int | None) -> list[S
             changes: dict[str, float],
             share: float = 1.0,
             i: int = i,
-            load: _Array = load,
+            load: Array = load,
             scenario: Scenario = scenario,
         ) -> Case:
             changed = scenario.replace(**changes) if changes else scenario

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, ComplexArray
 from ..bearing.description import curve_title
 from ..machine.branches import Modes
 from ..machine.machine import Machine
@@ -32,9 +33,6 @@ def _rotor_words(rotor: Rotor | None) -> str:
         return f"rotor of {number(rotor.rigid_mass)} kg per bearing"
     words = {"jeffcott": "Jeffcott rotor", "matrices": "rotor of your matrices"}
     return words.get(rotor.kind, "rotor")
-
-
-Array = NDArray[np.float64]
 
 
 def verdict_word(growth_rate: float) -> str:
@@ -72,8 +70,8 @@ class StabilityCurve:
     whirl_frequency_ratio: Array
     rotor: str = ""
     mass: float | None = None
-    eigenvalues: NDArray[np.complex128] | None = None
-    undamped: NDArray[np.bool_] | None = None
+    eigenvalues: ComplexArray | None = None
+    undamped: Booleans | None = None
     threshold_speeds: tuple[float, ...] = ()
     growth_rate_synchronous: Array | None = None
     threshold_speeds_synchronous: tuple[float, ...] = ()
@@ -208,9 +206,7 @@ def _thresholds(machine: Machine) -> tuple[float, ...]:
     return tuple(one.speed for one in threshold_speeds(machine))
 
 
-def _eigenvalues(
-    machine: Machine, speeds: Array
-) -> tuple[NDArray[np.complex128], NDArray[np.bool_]]:
+def _eigenvalues(machine: Machine, speeds: Array) -> tuple[ComplexArray, Booleans]:
     """Eigenvalues (n, k), each row by falling real part, undamped ones last; which those are.
 
     NaN where a support has no coefficients.

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..files.parameters import Parameter, Variant, spreads
 from ..machine.machine import Machine
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model.tolerances import ToleranceSettings
 
-Array = NDArray[np.float64]
 _INPUTS = {
     "radial_clearance": "radial_clearance",
     "viscosity": "viscosity",

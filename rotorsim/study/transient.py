@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..bearing.operating_point import OperatingPoint, plain
 from ..bearing.transient import TransientStep, solve_transient
 from ..errors import InputError
@@ -24,7 +24,6 @@ from .orbits import FilmFrame, film_at_rest
 if TYPE_CHECKING:
     from ..files.scenario import Scenario
 
-Array = NDArray[np.float64]
 
 _FRAMES = 60
 """Moments of which a recording shows the fields."""

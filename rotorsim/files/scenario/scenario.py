@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arguments import finite_number
+from ...arrays import Array
 from ...errors import InputError, ScenarioError
 from ...model import Bearing, Case, FilmSettings, Lubricant, Target, ThermalModel, ThermalSettings
 from ...model.entries import NOT_IN_FILES, Entry, Leaf, Made, Quantity, entries, marks_of, nearest
@@ -124,7 +124,7 @@ class Scenario:
         return self.load_direction
 
     @property
-    def speeds(self) -> NDArray[np.float64]:
+    def speeds(self) -> Array:
         """Speeds (n,), ascending [rad/s], read-only."""
         speeds = np.array(self.operating.speeds)
         speeds.setflags(write=False)

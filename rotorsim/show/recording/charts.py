@@ -14,8 +14,9 @@ import rerun as rr
 import rerun.blueprint as rrb
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ...arrays import Array, Booleans, ComplexArray
 from ...rows import QUANTITIES
 from ...study.stability import Campbell
 from ..figures.style import figure_bytes
@@ -24,7 +25,6 @@ from .runs import ALARM, Run, distinct_speeds, run_index, runs_named, speed_inde
 if TYPE_CHECKING:
     import xarray as xr
 
-Array = NDArray[np.float64]
 _DPI = 200
 _WIDTH, _LEGEND = 5.4, 6.8
 """Of the figure [inches], and of its legend's letters [points]."""
@@ -69,7 +69,7 @@ class Chart:
         pixels = self.axes.transData.transform(points.reshape(-1, 2)).reshape(points.shape)
         return np.stack([pixels[..., 0], self.size[1] - pixels[..., 1]], axis=-1)
 
-    def inside(self, x: Array, y: Array) -> NDArray[np.bool_]:
+    def inside(self, x: Array, y: Array) -> Booleans:
         """Whether data points are within the axes."""
         (left, right), (low, high) = self.axes.get_xlim(), self.axes.get_ylim()
         return (x >= left) & (x <= right) & (y >= low) & (y <= high)
@@ -212,7 +212,7 @@ def send_eigenvalues(
             _send_points(stream, entity, chart, run_index(run, rows), values)
 
 
-def _eigenvalues_at(curve: Campbell, speed: Array) -> NDArray[np.complex128]:
+def _eigenvalues_at(curve: Campbell, speed: Array) -> ComplexArray:
     """Eigenvalues between the tabulated speeds, (n, k) [1/s]; held at both ends."""
     known = curve.branches.parameter
     parts = [
@@ -227,7 +227,7 @@ def _send_points(
     entity: str,
     chart: Chart,
     index: list[rr.TimeColumn],
-    values: NDArray[np.complex128],
+    values: ComplexArray,
 ) -> None:
     shown = chart.inside(values.real, values.imag)
     counts = shown.sum(axis=1)

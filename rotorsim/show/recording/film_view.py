@@ -12,8 +12,8 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ...orbit.description import run_title
 from ...rows import QUANTITIES, RPM, ZERO_CELSIUS
 from ...study.orbits import FilmFrame
@@ -30,7 +30,6 @@ from .runs import (
     tick_text,
 )
 
-Array = NDArray[np.float64]
 BACKGROUND = [13, 13, 16]
 """Of the views in three dimensions, in light and dark theme alike."""
 _MOVING_SHARE = 0.95
@@ -227,7 +226,7 @@ def _send_caption(
     shape: str,
     texts: list[str],
     index: list[rr.TimeColumn],
-    which: NDArray[np.intp],
+    which: Indices,
 ) -> None:
     size = film.journal_radius * surfaces.MILLI
     half = 0.5 * film.length * surfaces.MILLI
@@ -329,7 +328,7 @@ def _send_motion(stream: rr.RecordingStream, entity: str, run: Run, scale: float
     zero = np.zeros_like(half)
     turn = np.stack([zero, zero, np.sin(half), np.cos(half)], axis=-1)
 
-    def columns(part: NDArray[np.intp]) -> rr.ComponentColumnList:
+    def columns(part: Indices) -> rr.ComponentColumnList:
         return rr.Transform3D.columns(
             translation=centre[part].astype(np.float32), quaternion=turn[part].astype(np.float32)
         )

@@ -18,6 +18,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...machine.thresholds import CRITICAL_DAMPING
 from ...rows import RPM, number
 from ...study import machine_tables as tables
@@ -34,7 +35,6 @@ from .write import film_views, write_stream
 if TYPE_CHECKING:
     from ...machine.branches import Modes
 
-Array = NDArray[np.float64]
 
 _MODES = 4
 _SPEEDS = 12

@@ -14,8 +14,8 @@ from itertools import pairwise
 import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ...files.machine import MachineFile
 from ...model.shaft import Disc
 from ...orbit import Orbit
@@ -25,8 +25,6 @@ from ..figures.machine import disc_size
 from .film_view import BACKGROUND
 from .runs import ALARM, LINE, TEXT, TIME, Run, run_index, thin
 from .surfaces import MILLI, cylinder
-
-Array = NDArray[np.float64]
 
 ROOT = "machine"
 _FRAMES_PER_TURN = 16
@@ -82,7 +80,7 @@ class MachineRun:
     run: Run
 
     @cached_property
-    def rows(self) -> NDArray[np.intp]:
+    def rows(self) -> Indices:
         """Samples that are shown."""
         count = self.motion.t.size
         step = max(1, self.motion.problem.samples_per_revolution // _FRAMES_PER_TURN)
@@ -107,7 +105,7 @@ class MachineRun:
     def _side(self) -> float:
         return 1.0 if self.machine.rotor.beam.clockwise else -1.0
 
-    def _swing(self, first: int, rows: NDArray[np.intp] | slice) -> tuple[Array, Array]:
+    def _swing(self, first: int, rows: Indices | slice) -> tuple[Array, Array]:
         """X and y [m] of every node's unknown `first` and the next along the run."""
         system = self.motion.problem.system
         places = self._rotor.first_unknown + first
@@ -125,7 +123,7 @@ class MachineRun:
         thickest = max(radius for _, _, radius in self.spans)
         return float(f"{_SHOWN_SWING * thickest / max(largest, 1e-12):.1g}")
 
-    def points(self, rows: NDArray[np.intp]) -> Array:
+    def points(self, rows: Indices) -> Array:
         """Nodes (rows, nodes, 3) as drawn [mm]."""
         x, y = self._swing(0, rows)
         return self._drawn(np.broadcast_to(self.nodes, x.shape), x, y)
@@ -134,7 +132,7 @@ class MachineRun:
         scale = self.magnification * MILLI
         return np.stack([z * MILLI, self._side * scale * y, -scale * x], axis=-1)
 
-    def turns(self, node: int, rows: NDArray[np.intp]) -> Array:
+    def turns(self, node: int, rows: Indices) -> Array:
         """Attitude (rows, 4) of a disc as a quaternion: its tilt as drawn, and its rotation."""
         tilt_x, tilt_y = self._swing(2, rows)
         # slope of the axis: dx/ds = theta_y, dy/ds = -theta_x, s along the rotation vector
@@ -150,11 +148,11 @@ class MachineRun:
         parts = (w * sin + x * cos, y * cos + z * sin, z * cos - y * sin, w * cos - x * sin)
         return np.stack(parts, axis=-1)
 
-    def index(self, rows: NDArray[np.intp]) -> list[rr.TimeColumn]:
+    def index(self, rows: Indices) -> list[rr.TimeColumn]:
         """Timelines at some samples of the motion."""
         return run_index(self.run, rows)
 
-    def station_path(self, station: Station, rows: NDArray[np.intp]) -> Array:
+    def station_path(self, station: Station, rows: Indices) -> Array:
         """Shaft's centre (rows, 3) at a station, as drawn."""
         x, y = self.motion.displacement(list(station.places))[rows].T
         return self._drawn(np.full(x.shape, station.position), x, y)
@@ -191,7 +189,7 @@ def log_machine(stream: rr.RecordingStream, shown: MachineRun) -> None:
             _log_path(stream, shown, station)
 
 
-def _chunks(rows: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
+def _chunks(rows: Indices) -> Iterator[Indices]:
     for start in range(0, rows.size, _CHUNK):
         yield rows[start : start + _CHUNK]
 

@@ -13,6 +13,7 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import ArrayLike, NDArray
 
+from ...arrays import Array, Indices
 from ...orbit import Orbit
 from ...orbit.analysis import once_per_turn
 from ...rows import RPM
@@ -196,7 +197,7 @@ def _send_trail(
         static=True,
     )
 
-    def segments(part: NDArray[np.intp]) -> rr.ComponentColumnList:
+    def segments(part: Indices) -> rr.ComponentColumnList:
         first = rows[np.maximum(np.searchsorted(rows, part) - 1, 0)]
         return rr.LineStrips2D.columns(strips=np.stack([points[first], points[part]], axis=1))
 
@@ -236,14 +237,13 @@ def _send_force(
     shown = force * np.minimum(1.0, 2.0 * middle / np.maximum(magnitude, 1e-12))[:, None]
     arrows = (shown * (scale, -scale)).astype(np.float32)
 
-    def columns(part: NDArray[np.intp]) -> rr.ComponentColumnList:
+    def columns(part: Indices) -> rr.ComponentColumnList:
         return rr.Arrows2D.columns(vectors=arrows[part], origins=points[part])
 
     send_run(stream, entity, run, rows, columns)
 
 
-Array = NDArray[np.float64]
-_Indices = NDArray[np.intp]
+_Indices = Indices
 _STANDSTILL = 1e-5
 """Clearances per turn of the shaft below which a journal counts as at rest."""
 _ENVELOPE_LIMIT = 40_000

@@ -10,6 +10,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import ArrayLike, NDArray
 
+from ...arrays import Array, Indices
 from ...orbit import Orbit
 from ...orbit.description import run_names, run_title
 from ...rows import RPM
@@ -34,9 +35,8 @@ SAMPLE_LIMIT = 1_000_000
 """More samples than this of one run are thinned to every second, third, ... one."""
 _MOVING_LIMIT = 1_000
 """Positions of a point that follows the speed of a run-up."""
-_Indices = NDArray[np.intp]
+_Indices = Indices
 _Columns = Callable[[_Indices], Iterable[Any]]
-Array = NDArray[np.float64]
 
 
 class Run(NamedTuple):

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ...arrays import Array
 from ...film.geometry import pad_face
 from ...study.orbits import FilmFrame
 
-Array = NDArray[np.float64]
 MILLI = 1e3
 _AROUND, _ALONG = 96, 16
 """Display grid: cells around and along the bearing (the films' own grids may differ)."""
