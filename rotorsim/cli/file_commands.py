@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -23,17 +24,6 @@ class _Profile(StrEnum):
     ELLIPTICAL = "elliptical"
     PRESSURE_DAM = "pressure_dam"
     TILTING_PAD = "tilting_pad"
-
-
-class _ExportFormat(StrEnum):
-    """Formats that `export` can write; `rotorsim.files.FORMATS` says how."""
-
-    ROSS = "ross"
-    ROSS2 = "ross2"
-    CSV = "csv"
-    MAT = "mat"
-    TXT = "txt"
-    NC = "nc"
 
 
 _OPTION_OF = {
@@ -61,17 +51,19 @@ class _NewRotor(StrEnum):
     BEAM = "beam"
 
 
-def _export_formats(text: str) -> list[_ExportFormat]:
+def _export_formats(text: str) -> list[str]:
     """Formats from words between commas, each once."""
+    from ..files.formats import FORMATS
+
     words = [word.strip().lower() for word in text.split(",")]
-    known = ", ".join(_ExportFormat)
-    if not all(word in set(_ExportFormat) for word in words):
+    if not set(words) <= set(FORMATS):
+        known = ", ".join(FORMATS)
         raise InputError(f"must be some of {known}, with commas between", key="--to", value=text)
-    return [_ExportFormat(word) for word in dict.fromkeys(words)]
+    return list(dict.fromkeys(words))
 
 
 def _load_directions(
-    text: str | None, table: Path, kinds: list[_ExportFormat]
+    text: str | None, table: Path, kinds: list[str]
 ) -> tuple[float | None, float | None]:
     """``--load-direction`` [rad] for reading `table` and for writing: whichever is ROSS's."""
     if text is None:
@@ -80,7 +72,7 @@ def _load_directions(
 
     angle = parse_quantity(text, "angle", key="--load-direction", example="-90 deg")
     reads = table.suffix.lower() in (".toml", ".json")
-    writes = not {_ExportFormat.ROSS, _ExportFormat.ROSS2}.isdisjoint(kinds)
+    writes = not {"ross", "ross2"}.isdisjoint(kinds)
     if not reads and not writes:
         message = "has no use: only the frame of ROSS is turned; give ross to --to"
         raise InputError(message, key="--load-direction", value=text)
@@ -160,13 +152,15 @@ def new(
     if rotor is _NewRotor.JEFFCOTT and example is not None:
         raise InputError("has its own rotor", key="--example")
     if example is None:
-        text = _new_text(path.stem, profile or _Profile.PLAIN, load, eccentricity, iso_vg)
-        if rotor is _NewRotor.JEFFCOTT:
-            text = text.replace(_RIGID_ROTOR, _JEFFCOTT_ROTOR)
-    elif (profile, load, eccentricity, iso_vg) == (None, None, None, None):
-        text = _shipped_text(example)
-    else:
+        bore = profile or _Profile.PLAIN
+        text = _scenario_text(path.stem, bore, load, eccentricity, iso_vg, rotor)
+    elif (profile, load, eccentricity, iso_vg) != (None,) * 4:
         raise InputError("has its own bore, load and oil: give no further choice", key="--example")
+    else:
+        shipped = shipped_scenarios()
+        if example not in shipped:
+            raise InputError(f"must be one of {', '.join(shipped)}", key="--example", value=example)
+        text = shipped[example].read_text(encoding="utf-8")
     try:
         loaded = Scenario.from_text(text, source=path)
     except InputError as error:
@@ -176,12 +170,7 @@ def new(
         raise InputError(error.message, key=_OPTION_OF[error.key], value=error.value) from None
     write_text(path, text)
     output.document({"scenario": path, "title": loaded.title})
-    output.show(
-        f"{path} is written. Put your numbers in, then:\n"
-        f"  rotorsim check {as_typed(path)}\n"
-        f"  rotorsim run {as_typed(path)}"
-    )
-    return DONE
+    return _say_next(output, path, f"{path} is")
 
 
 def _from_drawing(output: Output, path: Path, source: Path) -> int:
@@ -202,24 +191,6 @@ def _from_drawing(output: Output, path: Path, source: Path) -> int:
     return DONE
 
 
-def _new_text(
-    title: str,
-    profile: _Profile,
-    load: str | None,
-    eccentricity: float | None,
-    iso_vg: float | None,
-) -> str:
-
-    if load is not None and eccentricity is not None:
-        raise InputError("give a load or an eccentricity ratio, not both", key="--load")
-    target = (
-        ("load", "10 kN" if load is None else load)
-        if eccentricity is None
-        else ("eccentricity", eccentricity)
-    )
-    return _scenario_text(title, profile.value, target, 32.0 if iso_vg is None else iso_vg)
-
-
 def _new_machine(
     output: Output, path: Path, profile: _Profile, iso_vg: float | None, force: bool
 ) -> int:
@@ -231,25 +202,22 @@ def _new_machine(
     if bearing.exists() and not force:
         raise InputError("exists; choose another name, or replace it with --force", source=bearing)
     check_file(bearing)
-    safe = "".join(letter for letter in path.stem if letter.isprintable() and letter not in '"\\')
-    write_text(bearing, _new_text(f"Bearing of {safe}", profile, None, None, iso_vg))
-    text = _MACHINE.replace("{title}", safe)
-    write_text(path, text.replace("{bearing}", bearing.name.replace("\\", "").replace('"', "")))
+    title = _safe(path.stem)
+    write_text(bearing, _scenario_text(f"Bearing of {title}", profile, None, None, iso_vg))
+    text = _template("machine").replace("{title}", title)
+    write_text(path, text.replace("{bearing}", _unquoted(bearing.name)))
     loaded = load_machine(path)
     output.document({"machine": path, "bearing": bearing, "title": loaded.title})
+    return _say_next(output, path, f"{path} and {bearing} are")
+
+
+def _say_next(output: Output, path: Path, written: str) -> int:
     output.show(
-        f"{path} and {bearing} are written. Put your numbers in, then:\n"
+        f"{written} written. Put your numbers in, then:\n"
         f"  rotorsim check {as_typed(path)}\n"
         f"  rotorsim run {as_typed(path)}"
     )
     return DONE
-
-
-def _shipped_text(name: str) -> str:
-    shipped = shipped_scenarios()
-    if name not in shipped:
-        raise InputError(f"must be one of {', '.join(shipped)}", key="--example", value=name)
-    return shipped[name].read_text(encoding="utf-8")
 
 
 def export(
@@ -294,9 +262,9 @@ def export(
                 "would be replaced by itself; choose another folder with --output", source=table
             )
     files = {
-        kind.value: write_table(
-            loaded, kind.value, where, name,
-            load_direction=written_at if kind.value.startswith("ross") else None,
+        kind: write_table(
+            loaded, kind, where, name,
+            load_direction=written_at if kind.startswith("ross") else None,
         )
         for kind in kinds
     }  # fmt: skip
@@ -335,249 +303,39 @@ def view(
     return launch.exit_code
 
 
-_HEAD = """\
-# A rotorsim scenario. Every value with a dimension is a text with its unit: "100 um", "4 mil",
-# "40 degC", "2.9e-6 reyn". `rotorsim check` says what this file means.
-title = "{title}"
-
-[bearing]
-{kind}journal_radius = "50 mm"            # half of the diameter
-length = "80 mm"
-radial_clearance = "100 um"         # half of the diametral one; a list: ["80 um", "100 um"]
-roughness = "0.8 um"                # a thinner film is reported
-"""
-_GROOVES = """
-# Supply grooves at the split. Angles are counted from the load line, with the rotation.
-[[bearing.groove]]
-center = "90 deg"
-extent = "20 deg"
-supply_pressure = "100 kPa"
-
-[[bearing.groove]]
-center = "270 deg"
-extent = "20 deg"
-supply_pressure = "100 kPa"
-"""
-_BORES = {
-    "plain": "# A plain 360 degree bore; grooves are added with [[bearing.groove]].\n",
-    "grooved": _GROOVES,
-    "elliptical": """\
-profile = "elliptical"              # or "three_lobe", "offset_halves"
-preload = 0.5                       # 1 - (assembled clearance / lobe clearance)
-"""
-    + _GROOVES,
-    "pressure_dam": _GROOVES
-    + """
-# The dam: a pocket in the unloaded half that ends in a step; its pressure holds the journal down.
-[[bearing.pocket]]
-start = "100 deg"                   # behind the groove
-end = "225 deg"
-depth = "150 um"                    # depth_at_end: a taper
-length = "60 mm"
-
-# The relief track through the loaded half; without it the bearing carries more and whirls earlier.
-[[bearing.pocket]]
-start = "-80 deg"
-end = "80 deg"
-depth = "150 um"
-length = "20 mm"
-""",
-    "tilting_pad": """
-# The clearance above is the machined one: pad radius less journal radius. Pads all alike; pads of
-# their own are written one by one as [[bearing.pad]] with pivot_angle and what differs.
-[bearing.pads]
-count = 5
-arc = "58 deg"
-thickness = "18 mm"                 # from the pad's face to its pivot; mass and inertia follow
-offset = 0.5                        # of the pivot along the arc; 0.6: nearer to the trailing edge
-preload = 0.3                       # 1 - assembled over machined clearance
-load = "between_pads"               # or "on_pad"; or pivot_angle, that of the first pad
-pivot = { kind = "rigid" }          # stiffness | line | sphere | ball_in_socket: they give way
-feed = "flooded"                    # leading_edge_groove | spray_bar: less hot oil is carried over
-""",
-}
-_FILM_BEGINS = 'inception = "max_film"              # where the film begins: free | max_film\n'
-_OIL = """
-[lubricant]
-iso_vg = {iso_vg:g}                         # or two (temperature, viscosity) points:
-# viscosity_points = [["40 degC", "0.0277 Pa*s"], ["100 degC", "0.0046 Pa*s"]]
-density = "860 kg/m^3"
-specific_heat = "2000 J/(kg*delta_degC)"
-thermal_conductivity = "0.13 W/(m*delta_degC)"
-
-[film]
-cavitation = "reynolds"             # full_sommerfeld | half_sommerfeld | reynolds | jfo
-flow = "laminar"                    # "turbulent" where rho U c/mu reaches some 500
-{begins}mesh = {{ circumferential = {around}, axial = 24, cross_film = 16 }}  # try half, and double
-
-[thermal]
-models = ["isothermal", "thd"]      # heating neglected, and solved for
-# Where the heat goes decides film and losses. The oil carries it all here: a film on the hot side.
-inlet = "mixing"                    # warm oil comes round; "fresh": every film begins with
-                                    # supplied oil, colder; "periodic": nothing fresh, hotter
-shaft = "insulated"                 # it takes no net heat (a long shaft); "ambient": held at
-                                    # ambient temperature, far colder; or a measured temperature
-{bush}ambient_temperature = "40 degC"
-supply_temperature = "40 degC"
-
-[operating]
-speed = {{ start = "1000 rpm", stop = "12000 rpm", count = 12 }}
-"""
-_BUSH = """\
-bush = "insulated"                  # no heat; "conduction": through the bush into the air, the
-                                    # most real (needs bearing.bush_outer_radius, bush_conductivity
-                                    # and bush_heat_transfer); "ambient": held there, far colder
-"""
-_PADS = """\
-bush = "conduction"                 # through each pad into the oil around it; or "insulated"
-bush_conductivity = "50 W/(m*delta_degC)"
-bush_heat_transfer = "100 W/(m^2*delta_degC)"
-"""
-_LOAD = """\
-load = "{load}"                      # or: eccentricity_ratio = 0.5
-# load_direction = "0 deg"          # of the load, if angles are counted from elsewhere
-"""
-_ECCENTRICITY = """\
-eccentricity_ratio = {eccentricity:g}            # or: load = "10 kN"
-"""
-_RIGID_ROTOR = 'mass = "1000 kg"                    # per bearing\n'
-_JEFFCOTT_ROTOR = """\
-kind = "jeffcott"                   # a disc on a massless shaft between two like bearings
-disc_mass = "900 kg"                # half of the disc's
-journal_mass = "50 kg"
-shaft_stiffness = "400 MN/m"        # half of the shaft's
-"""
-_ROTOR = """
-[rotor]
-mass = "1000 kg"                    # per bearing
-unbalance = "500 g*mm"
-
-[orbit]
-force = "linear"                    # linear (K and C) | film (nonlinear film force)
-speed = "6000 rpm"                  # or { start = "3000 rpm", stop = "9000 rpm", duration = "2 s" }
-revolutions = 60
-initial_displacement = ["1 um", "0 um"]
-"""
-
-
-def _scenario_text(title: str, profile: str, target: tuple[str, str | float], iso_vg: float) -> str:
-    """TOML text of a new scenario.
-
-    profile : A member of `_Profile`.
-    target : (str, value). ``("load", "10 kN")`` or ``("eccentricity", 0.5)``.
-    iso_vg : Grade of the oil.
-    """
-    kind, value = target
-    # What a user typed goes into quotes in the file: nothing in it may end them.
-    quoted = str(value).replace("\\", "").replace('"', "")
-    held = _LOAD.format(load=quoted) if kind == "load" else _ECCENTRICITY.format(eccentricity=value)
-    safe = "".join(letter for letter in title if letter.isprintable() and letter not in '"\\')
-    pads = profile == "tilting_pad"
-    head = _HEAD.format(title=safe, kind='kind = "tilting_pad"\n' if pads else "")
-    oil = _OIL.format(
-        iso_vg=iso_vg, around=150 if pads else 96, begins="" if pads else _FILM_BEGINS,
-        bush=_PADS if pads else _BUSH,
+def _scenario_text(
+    title: str, profile: _Profile, load: str | None, eccentricity: float | None,
+    iso_vg: float | None, rotor: _NewRotor = _NewRotor.RIGID,
+) -> str:  # fmt: skip
+    """TOML text of a new scenario."""
+    if load is not None and eccentricity is not None:
+        raise InputError("give a load or an eccentricity ratio, not both", key="--load")
+    parts = re.split(r"^#: (\w+)\n", _template("scenario"), flags=re.MULTILINE)
+    piece = dict(zip(parts[1::2], parts[2::2], strict=True))
+    pads = profile is _Profile.TILTING_PAD
+    bore = {
+        _Profile.ELLIPTICAL: piece["elliptical"] + piece["grooved"],
+        _Profile.PRESSURE_DAM: piece["grooved"] + piece["pressure_dam"],
+    }.get(profile, piece[profile.value])
+    oil = piece["oil"].format(
+        iso_vg=32.0 if iso_vg is None else iso_vg, around=150 if pads else 96,
+        begins="" if pads else piece["film_begins"], bush=piece["pads" if pads else "bush"],
     )  # fmt: skip
-    return head + _BORES[profile] + oil + held + _ROTOR
+    # What a user typed goes into quotes in the file: nothing in it may end them.
+    held = piece["load"].format(load=_unquoted("10 kN" if load is None else load))
+    if eccentricity is not None:
+        held = piece["eccentricity"].format(eccentricity=eccentricity)
+    head = piece["head"].format(title=_safe(title), kind='kind = "tilting_pad"\n' if pads else "")
+    return head + bore + oil + held + piece["rotor"].replace("{rotor}", piece[rotor.value])
 
 
-_MACHINE = """\
-# A machine: a rotor from its drawing on its bearings. `rotorsim check` says what this file means,
-# `rotorsim run` does the whole job: bearings, modes, response, checks, figures, recording.
-title = "{title}"
+def _template(name: str) -> str:
+    return (Path(__file__).parent / "templates" / f"{name}.toml").read_text(encoding="utf-8")
 
-[rotor]
-kind = "beam"                       # steel; youngs_modulus, density and poisson_ratio change it
-rotation = "clockwise"              # seen from the left end
-# internal_damping = "1e-5 s"       # rotating: above a critical speed it drives forward whirl
 
-# Sections from the left end on; inner_diameter makes them hollow, outer_diameter_right a taper. A
-# sleeve over them has at and layer = 2.
-[[rotor.section]]
-length = "200 mm"
-outer_diameter = "100 mm"           # twice the bearing's journal_radius
+def _unquoted(text: str) -> str:
+    return text.replace("\\", "").replace('"', "")
 
-[[rotor.section]]
-length = "300 mm"
-outer_diameter = "140 mm"
 
-[[rotor.section]]
-length = "500 mm"
-outer_diameter = "180 mm"
-
-[[rotor.section]]
-length = "300 mm"
-outer_diameter = "140 mm"
-
-[[rotor.section]]
-length = "200 mm"
-outer_diameter = "100 mm"
-
-[[rotor.disc]]                      # or its dimensions; mass alone: an added mass
-name = "wheel"
-at = "750 mm"                       # from the left end, like every place
-mass = "400 kg"
-polar_inertia = "20 kg*m^2"
-transverse_inertia = "11 kg*m^2"
-
-[[rotor.unbalance]]
-at = "750 mm"
-grade = "G2.5"                      # ISO 21940-11; or amount = "500 g*mm"
-
-# Angles of a bearing count from x, down, in the direction of rotation; its own load and speeds are
-# not used here. In place of bearing: coefficients = "theirs.csv", or stiffness and damping.
-[[support]]
-name = "left"
-at = "100 mm"
-bearing = "{bearing}"
-# pedestal = { mass = "300 kg", stiffness = "500 MN/m", damping = "50 kN*s/m" }
-
-[[support]]
-name = "right"
-at = "1400 mm"
-bearing = "{bearing}"
-
-# [[seal]]                          # a seal or impeller: acts on the motion, carries no load
-# at = "600 mm"
-# stiffness = [["1 MN/m", "0.5 MN/m"], ["-0.5 MN/m", "1 MN/m"]]
-# damping = "1 kN*s/m"
-
-[[probe]]
-name = "left X"
-at = "220 mm"
-angle = "135 deg"
-
-[[probe]]
-name = "left Y"
-at = "220 mm"
-angle = "225 deg"
-
-# [[clearance]]                     # checked against the response
-# at = "600 mm"
-# diametral = "0.5 mm"
-
-[operating]
-speed = { start = "2000 rpm", stop = "8000 rpm", count = 7 }
-continuous = ["4000 rpm", "6000 rpm"]   # the range that margins are judged for
-trip = "6600 rpm"
-
-[lateral]
-edition = "formulas of API 617, not compared with an edition"
-destabilising_stiffness = [{ at = "750 mm", anticipated = "2 MN/m" }]
-
-# A map of the least stable mode's growth rate, by rotorsim run; any two parameters of the machine.
-# [[map]]
-# x = "speed"
-# y = "left.clearance"
-# y_values = { start = "80 um", stop = "140 um", count = 5 }
-
-# What tolerances do to the threshold: rotorsim stability --tolerances
-# [tolerances]
-# spread = { "left.clearance" = "10 um", "right.clearance" = "10 um", viscosity = "10 %" }
-
-# A magnetic actuator and its sensor: rotorsim control
-# [control]
-# actuator = ["400 mm"]
-# sensor = ["wheel"]
-# max_force = "2 kN"
-"""
+def _safe(title: str) -> str:
+    return "".join(letter for letter in _unquoted(title) if letter.isprintable())

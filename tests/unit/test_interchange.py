@@ -274,9 +274,9 @@ def test_only_the_frame_of_ross_is_turned(one, tmp_path):
 
 
 def test_load_direction_goes_to_the_file_of_ross():
-    from rotorsim.cli.file_commands import _ExportFormat, _load_directions
+    from rotorsim.cli.file_commands import _load_directions
 
-    ross, csv = _ExportFormat.ROSS, _ExportFormat.CSV
+    ross, csv = "ross", "csv"
     assert _load_directions(None, Path("b.nc"), [csv]) == (None, None)
     eighth = pytest.approx(0.25 * math.pi)
     assert _load_directions("45 deg", Path("b.nc"), [csv, ross]) == (None, eighth)
