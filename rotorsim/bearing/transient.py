@@ -47,17 +47,10 @@ Conditions = Callable[[float], tuple[Case, float]]
 class TransientStep:
     """One moment of a transient.
 
-    Attributes
-    ----------
-    time : float
-        [s]
-    point : OperatingPoint
-        Its film and coefficients, between solids of the temperatures of this moment.
-    shaft_temperature : float
-        Mean of the journal [K].
-    bush_temperature : float
-        Mean of the bush, or of all pads [K].
-    state : SolidState
+    time : [s]
+    point : Its film and coefficients, between solids of the temperatures of this moment.
+    shaft_temperature : Mean of the journal [K].
+    bush_temperature : Mean of the bush, or of all pads [K].
     """
 
     time: float
@@ -80,23 +73,13 @@ def solve_transient(
 ) -> Iterator[TransientStep]:
     """Give the moments of a transient one by one, the first at 0; the last may have failed.
 
-    Parameters
-    ----------
-    conditions : callable
-        Just before a break it gives what held before it.
-    storage : HeatStorage
-    duration : float
-        [s]
-    start : float or None
-        Temperature of the solids at the beginning [K]; None: those of the steady state.
-    breaks : sequence of float
-        Times at which conditions jump or bend [s].
-    tolerance : float
-        Of the temperatures in one step [K].
-    step : float, optional
-        Constant time step [s], in place of the tolerance.
-    keep_fields : bool
-        Keep the fields of every point.
+    conditions : Just before a break it gives what held before it.
+    duration : [s]
+    start : Temperature of the solids at the beginning [K]; None: those of the steady state.
+    breaks : Times at which conditions jump or bend [s].
+    tolerance : Of the temperatures in one step [K].
+    step : Constant time step [s], in place of the tolerance.
+    keep_fields : Keep the fields of every point.
     """
     march = _March(conditions, storage, duration, tolerance, step, keep_fields)
     try:

@@ -26,11 +26,7 @@ Array = NDArray[np.float64]
 class WallTemperatures:
     """Both walls [K]; an insulated wall takes no heat at all.
 
-    Attributes
-    ----------
     bush : (n, m) array
-    shaft : float
-    bush_insulated : bool
     """
 
     bush: Array
@@ -42,27 +38,17 @@ class WallTemperatures:
 class EnergyProblem:
     """Everything in the energy equation but the temperature: linear in it.
 
-    Attributes
-    ----------
-    flow : FilmFlow
-    layers : LayerIntegrals
-    heating : (4, n, m) array
-        Multipliers of the parts of the dissipation of a layer (see `dissipation`).
-    carry_over : (n, m) array
-        Part of the oil entering through the west face that comes from the column before; the rest
-        has the inlet's temperature.
-    conductance : (n, m) array
-        k (liquid area)/(h dz): between neighbouring layers [W/K].
-    heat_capacity : float
-        rho c_p [J/(m3 K)].
-    order : (n,) int array
-        Columns in the order of the march.
-    axial_order : (m,) int array
-        From where the flow along the axis starts, outwards.
+    heating : (4, n, m) array. Multipliers of the parts of the dissipation of a layer (see
+        `dissipation`).
+    carry_over : (n, m) array. Part of the oil entering through the west face that comes from the
+        column before; the rest has the inlet's temperature.
+    conductance : (n, m) array. k (liquid area)/(h dz): between neighbouring layers [W/K].
+    heat_capacity : rho c_p [J/(m3 K)].
+    order : (n,) int array. Columns in the order of the march.
+    axial_order : (m,) int array. From where the flow along the axis starts, outwards.
     fixed : (n, m) bool array
     interior : (4, n, m) bool array
-    dx, dy : arrays
-        Cell lengths [m].
+    dx, dy : arrays. Cell lengths [m].
     """
 
     flow: FilmFlow
@@ -161,28 +147,17 @@ def march(
 ) -> tuple[float, Array]:
     """Solve for the temperature in place.
 
-    Parameters
-    ----------
-    viscosity : (n, m, k) array
-        [Pa s]
-    inlet_temperature : (4, n, m) or (4, n, m, k) array
-        Of the oil that enters through a face behind which no film lies [K].
-    temperature : (n, m, k) array
-        First guess, overwritten [K].
-    passes : int
-        Sweeps; one is exact where nothing flows back.
-    source : (n, m, k) array, optional
-        Further heat [W] (manufactured solutions).
-    leaving : (2, n, m, k) array, optional
-        What a march over a neighbouring field returned; needed where a cell is visited before the
-        one upstream of it, overwritten.
-
-    Returns
-    -------
-    float
-        The last pass's largest change [K].
-    (2, n, m, k) array
-        Temperature of the oil that leaves each layer along the film and along the axis [K].
+    viscosity : (n, m, k) array. [Pa s]
+    inlet_temperature : (4, n, m) or (4, n, m, k) array. Of the oil that enters through a face
+        behind which no film lies [K].
+    temperature : (n, m, k) array. First guess, overwritten [K].
+    passes : Sweeps; one is exact where nothing flows back.
+    source : (n, m, k) array. Further heat [W] (manufactured solutions).
+    leaving : (2, n, m, k) array. What a march over a neighbouring field returned; needed where a
+        cell is visited before the one upstream of it, overwritten.
+    Returns float: The last pass's largest change [K].
+    Returns (2, n, m, k) array: Temperature of the oil that leaves each layer along the film and
+        along the axis [K].
     """
     change = 0.0
     flow, layers = problem.flow, problem.layers

@@ -67,18 +67,12 @@ _RIM_POINTS = 1440
 class ForceField:
     """The isothermal film's force [N] at any position [m], on a coarse mesh; load frame.
 
-    Attributes
-    ----------
-    case : Case
-        On the coarse mesh.
-    speed : float
-        [rad/s]
-    normals : (2, t) array
-        Directions in which metal lies.
-    room : (t,) array
-        Film thickness there with the journal centred, at the end where it is thinner [m].
-    mesh : tuple or None
-        Problem and angle of its frame from the load line [rad], taken at any position instead.
+    case : On the coarse mesh.
+    speed : [rad/s]
+    normals : (2, t) array. Directions in which metal lies.
+    room : (t,) array. Film thickness there with the journal centred, at the end where it is thinner
+        [m].
+    mesh : Problem and angle of its frame from the load line [rad], taken at any position instead.
     """
 
     case: Case
@@ -177,12 +171,8 @@ def _places(field: ForceField) -> Iterator[_Position]:
 class Crossing:
     """Place round which the unbalanced force turns: the equilibrium, or where the force jumps.
 
-    Attributes
-    ----------
-    position : tuple of float
-        [m], load frame.
-    off : float
-        Unbalanced force next to it, relative to the load (radians at a given eccentricity): small
+    position : [m], load frame.
+    off : Unbalanced force next to it, relative to the load (radians at a given eccentricity): small
         at an equilibrium. NaN where the force could not be followed.
     """
 

@@ -38,10 +38,7 @@ def bore_offset(bearing: Bearing, theta: Array) -> Array:
     A lobe's centre of curvature is displaced by ``preload * c`` away from the point where it comes
     nearest, so h falls by ``preload * c * cos(theta - angle)``.
 
-    Parameters
-    ----------
-    theta : array
-        [rad], load frame.
+    theta : array. [rad], load frame.
     """
     offset = np.zeros_like(theta)
     for arc in bearing.arcs:
@@ -57,14 +54,9 @@ def bore_offset(bearing: Bearing, theta: Array) -> Array:
 class Displacements:
     """Generalised displacements of a film.
 
-    Attributes
-    ----------
-    names : tuple of str
-    shapes : (q, 5, n, m) array
-        dh/dq at the centre and on the west, east, south and north face of each cell, seen from
-        inside the cell.
-    scales : (q,) array
-        A change of each displacement that changes h by about the clearance.
+    shapes : (q, 5, n, m) array. dh/dq at the centre and on the west, east, south and north face of
+        each cell, seen from inside the cell.
+    scales : (q,) array. A change of each displacement that changes h by about the clearance.
     """
 
     names: tuple[str, ...]
@@ -84,18 +76,13 @@ class Displacements:
 class FilmGeometry:
     """Film thickness as a function of the displacements, on the cells of one mesh.
 
-    Attributes
-    ----------
-    rest : (5, n, m) array
-        h with all displacements zero [m], at the points of `Displacements.shapes`. Where the bore
-        steps at a face, as between lobes, each cell sees its own side.
-    displacements : Displacements
-    land : (n, m) bool array
-        Cells with metal behind the film: outside the grooves.
-    multiplicity : float
-        How many identical parts the mesh stands for.
-    still : (n,) bool array or None
-        Columns whose film no displacement moves, as that of an unloaded pad.
+    rest : (5, n, m) array. h with all displacements zero [m], at the points of
+        `Displacements.shapes`. Where the bore steps at a face, as between lobes, each cell sees its
+        own side.
+    land : (n, m) bool array. Cells with metal behind the film: outside the grooves.
+    multiplicity : How many identical parts the mesh stands for.
+    still : (n,) bool array or None. Columns whose film no displacement moves, as that of an
+        unloaded pad.
     """
 
     rest: Array

@@ -44,12 +44,7 @@ _STEP_TOLERANCE = 1e-9
 class _Motions:
     """Displacements whose motions solve one film matrix.
 
-    Attributes
-    ----------
-    state : FilmState
-    displacements : Displacements
-    factor : Factor
-        Of that matrix.
+    factor : Of that matrix.
     """
 
     state: FilmState
@@ -104,11 +99,7 @@ def linearize(state: FilmState, *, rotations: bool = False) -> tuple[Array, Arra
     The liquid fraction of a mass-conserving film takes its steady value at once; with the oil that
     it stores see `DynamicStiffness`.
 
-    Parameters
-    ----------
-    state : FilmState
-    rotations : bool
-        Add the journal's rotations behind the film's own displacements.
+    rotations : Add the journal's rotations behind the film's own displacements.
     """
     blocks = [
         np.split(motions.reaction(motions.sources()), 2, axis=1)
@@ -121,12 +112,8 @@ def linearize(state: FilmState, *, rotations: bool = False) -> tuple[Array, Arra
 class DynamicStiffness:
     """Forces of the film of a motion q exp(s t), stored oil included: Q = -A(s) q.
 
-    Parameters
-    ----------
-    state : FilmState
-        At rest.
-    rotations : bool
-        As in `linearize`.
+    state : At rest.
+    rotations : As in `linearize`.
     """
 
     def __init__(self, state: FilmState, *, rotations: bool = False) -> None:
@@ -161,11 +148,7 @@ def _displacement_sources(state: FilmState, shapes: Array) -> Array:
 
     In cells of grooves, to the balance of oil there (`BorderedFactor`).
 
-    Parameters
-    ----------
-    state : FilmState
-    shapes : (q, 5, n, m) array
-        dh/dq, see `Displacements`.
+    shapes : (q, 5, n, m) array. dh/dq, see `Displacements`.
     """
     operator, layers = state.operator, state.layers
     sources = np.zeros((len(shapes), *operator.area.shape))
@@ -274,12 +257,8 @@ def following_stiffness(film: ThermalFilm) -> tuple[Array, bool]:
     By central differences of converged films. The mesh stays where it is and every cell keeps its
     state (full or ruptured), as they do in the linearised film.
 
-    Returns
-    -------
-    (q, q) array
-        K_ij = -dQ_i/dq_j, film frame.
-    bool
-        Whether all displaced films converged.
+    Returns (q, q) array: K_ij = -dQ_i/dq_j, film frame.
+    Returns bool: Whether all displaced films converged.
     """
     state = film.state
     displacements = state.problem.geometry.displacements

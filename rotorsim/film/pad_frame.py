@@ -20,18 +20,10 @@ Flags = NDArray[np.bool_]
 class PadFrame:
     """One pad of a film: its cells, its unknowns, and how far it may tilt.
 
-    Attributes
-    ----------
-    pad : Pad
-    clearance : float
-        Machined [m].
-    preload : float
-    arm : float
-        R + t [m].
+    clearance : Machined [m].
+    arm : R + t [m].
     columns : (n,) bool array
-    unknowns : PadUnknowns
-    sine : (5, columns, 1) array
-        sin(theta - theta_p) at the points of `FilmGeometry.rest`.
+    sine : (5, columns, 1) array. sin(theta - theta_p) at the points of `FilmGeometry.rest`.
     """
 
     pad: Pad

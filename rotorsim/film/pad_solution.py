@@ -64,11 +64,8 @@ def solve_pads(
 
     `walls` as in `solve_film`.
 
-    Raises
-    ------
-    NoFilmError
-        No pads stand in the load's way, or at the given eccentricity the journal touches one
-        wherever it stands.
+    Raises NoFilmError: No pads stand in the load's way, or at the given eccentricity the journal
+        touches one wherever it stands.
     """
     problem = film_problem(case, speed, case.bearing, (0.0, 0.0))
     search = PadSearch(problem, case.target)

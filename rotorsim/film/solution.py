@@ -70,15 +70,10 @@ _MAX_MESHES = 8
 class WarmStart:
     """First guess for the next speed; picklable.
 
-    Attributes
-    ----------
-    position : tuple of float
-        Journal centre over the radial clearance, load frame.
-    heat : Heat or None
-    full : (n, m) bool array
-        Cells of full film.
-    pads : array or None
-        Displacements of tilting pads, after the journal's, over the radial clearance.
+    position : Journal centre over the radial clearance, load frame.
+    full : (n, m) bool array. Cells of full film.
+    pads : array or None. Displacements of tilting pads, after the journal's, over the radial
+        clearance.
     """
 
     position: _Position
@@ -91,20 +86,9 @@ class WarmStart:
 class FilmSolution:
     """A film at its equilibrium, or the last iterate with the reason why it is not.
 
-    Attributes
-    ----------
-    problem : FilmProblem
-    state : FilmState
-    thermal : ThermalFilm or None
-        None for an isothermal film.
-    frame : float
-        Angle from the load line to the film frame's x axis [rad].
-    status : SolveStatus
-    message : str
-    iterations : int
-    residual : float
-    unloaded : frozenset of int
-        Pads whose film cannot be balanced at positive pressure, counted from 0.
+    thermal : None for an isothermal film.
+    frame : Angle from the load line to the film frame's x axis [rad].
+    unloaded : Pads whose film cannot be balanced at positive pressure, counted from 0.
     """
 
     problem: FilmProblem

@@ -34,14 +34,10 @@ _HARMONICS = 16
 class SolidState:
     """Temperatures of shaft and bush, or pads, at one moment.
 
-    Attributes
-    ----------
-    shaft : (cells,) array
-        From the axis outwards [K].
-    solids : tuple of (n, m, l) arrays
-        Around, along, outwards: of the bush or of each pad [K]; empty where they store nothing.
-    faces : tuple of (n + 1,) arrays
-        Angles of their cells in the load frame [rad].
+    shaft : (cells,) array. From the axis outwards [K].
+    solids : tuple of (n, m, l) arrays. Around, along, outwards: of the bush or of each pad [K];
+        empty where they store nothing.
+    faces : tuple of (n + 1,) arrays. Angles of their cells in the load frame [rad].
     """
 
     shaft: Array
@@ -70,13 +66,7 @@ class SolidState:
 
 @dataclass(frozen=True)
 class HeatStorage:
-    """What the solids of a bearing store.
-
-    Parameters
-    ----------
-    shaft : ShaftMaterial
-    bush : SolidMaterial
-    """
+    """What the solids of a bearing store."""
 
     shaft: ShaftMaterial
     bush: SolidMaterial
@@ -104,15 +94,9 @@ class HeatStorage:
 class HeatStep:
     """The film's walls over one time step; call it with a film's problem.
 
-    Parameters
-    ----------
-    storage : HeatStorage
-    held : SolidState
-        What the step begins from.
-    rate : float
-        Of the backward difference: dT/dt = rate (T - held) [1/s].
-    frame : float
-        Angle of a plain film's line of centres in the load frame, as far as known [rad]; other
+    held : What the step begins from.
+    rate : Of the backward difference: dT/dt = rate (T - held) [1/s].
+    frame : Angle of a plain film's line of centres in the load frame, as far as known [rad]; other
         films are in the load frame.
     """
 
@@ -163,14 +147,10 @@ class HeatStep:
 class _StoringShaft(_Wall):
     """A shaft that stores heat, one temperature around and along, over a time step.
 
-    Attributes
-    ----------
-    per_watt : (cells,) array
-        Rise of its cells at the step's end per heat from the meshed part of the film [K/W].
-    rest : (cells,) array
-        Temperature at the step's end without heat [K].
-    skin : float
-        Resistance from the outermost cell's centre to the surface [K/W].
+    per_watt : (cells,) array. Rise of its cells at the step's end per heat from the meshed part of
+        the film [K/W].
+    rest : (cells,) array. Temperature at the step's end without heat [K].
+    skin : Resistance from the outermost cell's centre to the surface [K/W].
     """
 
     per_watt: Array

@@ -22,13 +22,8 @@ from .support import Matrices, Support, common_speeds
 class Mount:
     """A support at a node.
 
-    Attributes
-    ----------
-    node : int or str
-        Number or name of the node.
-    support : Support
-    name : str
-        Of the support, in results.
+    node : Number or name of the node.
+    name : Of the support, in results.
     """
 
     node: int | str
@@ -40,17 +35,9 @@ class Mount:
 class Machine:
     """A rotor on its supports.
 
-    Parameters
-    ----------
-    rotor : Rotor
-    supports : sequence of Mount or (node, Support)
-        Several may stand at one node.
-
-    Raises
-    ------
-    InputError
-        A node does not exist, lacks an unknown that its support needs, or the tables of the
-        supports have no speed in common.
+    supports : sequence of Mount or (node, Support). Several may stand at one node.
+    Raises InputError: A node does not exist, lacks an unknown that its support needs, or the tables
+        of the supports have no speed in common.
     """
 
     rotor: Rotor
@@ -132,15 +119,8 @@ class Machine:
     def matrices(self, speed: ArrayLike) -> Matrices:
         """Mass, damping and stiffness, each speed.shape + (n, n), gyroscopic terms included.
 
-        Parameters
-        ----------
-        speed : array
-            [rad/s]
-
-        Raises
-        ------
-        OutOfRangeError
-            A speed lies outside a support's table.
+        speed : array. [rad/s]
+        Raises OutOfRangeError: A speed lies outside a support's table.
         """
         omega = np.asarray(speed, dtype=float)
         rotor, n = self.rotor, self.rotor.size

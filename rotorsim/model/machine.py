@@ -440,14 +440,10 @@ _Unchecked = Annotated[Any, _Unread()]
 class MapEntry:
     """A map of stability over two parameters of the machine.
 
-    Parameters
-    ----------
-    x, y : str
-        Their names; see `rotorsim.files.parameters`.
-    x_values, y_values : list of str, str, dict or None
-        With units; or ``{ start, stop, count }``. By default a span about the file's value.
-    hold : dict
-        Values of other parameters, in place of the file's, by name.
+    x, y : Their names; see `rotorsim.files.parameters`.
+    x_values, y_values : With units; or ``{ start, stop, count }``. By default a span about the
+        file's value.
+    hold : Values of other parameters, in place of the file's, by name.
     """
 
     x: Annotated[str, Example("speed")]
@@ -461,17 +457,11 @@ class MapEntry:
 class MachineTolerances:
     """Tolerances of a machine's parameters.
 
-    Parameters
-    ----------
-    spread : dict
-        By the parameter's name: ``"5 um"``, ``"10 %"``, or a table with its own distribution.
-    distribution : Distribution
-        Of every parameter that does not say otherwise.
-    speed : float or None
-        At which stability is asked for [rad/s]; by default the highest continuous one, else the
+    spread : By the parameter's name: ``"5 um"``, ``"10 %"``, or a table with its own distribution.
+    distribution : Of every parameter that does not say otherwise.
+    speed : At which stability is asked for [rad/s]; by default the highest continuous one, else the
         highest.
-    samples, seed : int
-        See `rotorsim.model.tolerances.ToleranceSettings`.
+    samples, seed : See `rotorsim.model.tolerances.ToleranceSettings`.
     """
 
     spread: Annotated[Any, _Unread(), Example({"left.radial_clearance": "5 um"})]
@@ -485,27 +475,18 @@ class MachineTolerances:
 class MachineControl:
     """Active magnetic actuators and the sensors that they listen to.
 
-    Parameters
-    ----------
-    actuator, sensor : tuple of str
-        Places: lengths from the left end, or names of discs, supports, seals, probes. Each acts or
-        measures along x and y. Sensors default to the actuators' places.
-    design : Design
-        ``lqr``: regulator and Kalman filter on the reduced machine; ``pd``: each sensor to the
+    actuator, sensor : Places: lengths from the left end, or names of discs, supports, seals,
+        probes. Each acts or measures along x and y. Sensors default to the actuators' places.
+    design : ``lqr``: regulator and Kalman filter on the reduced machine; ``pd``: each sensor to the
         actuator of the same number.
-    max_force : float
-        Saturation of each axis [N].
-    speed : float or None
-        By default the highest [rad/s].
-    displacement_scale : float
-        At the sensors, as bad as the full force [m].
-    force_scale : float or None
-        What counts as a large force [N]; `max_force` where that is finite.
-    noise : float
-        Of the sensors, for the Kalman filter: against a disturbance of `force_scale` [m].
-    reduction_error : float
-        Of the reduced model: bound on the error of the receptance from actuators to sensors, as a
-        share of its largest stable part; less where the feedback would drive what is left out.
+    max_force : Saturation of each axis [N].
+    speed : By default the highest [rad/s].
+    displacement_scale : At the sensors, as bad as the full force [m].
+    force_scale : What counts as a large force [N]; `max_force` where that is finite.
+    noise : Of the sensors, for the Kalman filter: against a disturbance of `force_scale` [m].
+    reduction_error : Of the reduced model: bound on the error of the receptance from actuators to
+        sensors, as a share of its largest stable part; less where the feedback would drive what is
+        left out.
     """
 
     actuator: Annotated[tuple[str, ...], Example(["250 mm"])]

@@ -27,12 +27,8 @@ class TransientStart(StrEnum):
 class SolidMaterial:
     """What a solid stores.
 
-    Parameters
-    ----------
-    density : float
-        [kg/m3]
-    specific_heat : float
-        [J/(kg K)]
+    density : [kg/m3]
+    specific_heat : [J/(kg K)]
     """
 
     density: Annotated[float, Quantity("density", "7850 kg/m^3")] = STEEL_DENSITY
@@ -51,12 +47,8 @@ class SolidMaterial:
 class ShaftMaterial(SolidMaterial):
     """A shaft that conducts along its radius.
 
-    Parameters
-    ----------
-    conductivity : float
-        [W/(m K)]
-    length : float or None
-        Of the shaft that the bearing heats [m]; None: the bearing's.
+    conductivity : [W/(m K)]
+    length : Of the shaft that the bearing heats [m]; None: the bearing's.
     """
 
     conductivity: Annotated[float, Quantity("thermal conductivity", "50 W/(m*delta_degC)")] = 50.0
@@ -67,20 +59,12 @@ class ShaftMaterial(SolidMaterial):
 class TransientEvent:
     """What changes at one moment; what is left out stays as it is.
 
-    Parameters
-    ----------
-    at : float
-        [s]
-    over : float
-        Time that the change takes, linearly [s]; 0: a step.
-    speed : float or None
-        [rad/s]
-    load : float or None
-        [N]
-    supply_temperature, ambient_temperature : float or None
-        [K]
-    supply : bool or None
-        False: no oil is supplied any more; the oil in the bearing goes round uncooled.
+    at : [s]
+    over : Time that the change takes, linearly [s]; 0: a step.
+    speed : [rad/s]
+    load : [N]
+    supply_temperature, ambient_temperature : [K]
+    supply : False: no oil is supplied any more; the oil in the bearing goes round uncooled.
     """
 
     at: Instant = 0.0
@@ -99,23 +83,12 @@ class TransientEvent:
 class TransientSettings:
     """A thermal transient of a bearing.
 
-    Parameters
-    ----------
-    duration : float
-        [s]
-    start : TransientStart
-    initial_temperature : float or None
-        Of shaft and bush in a cold start [K]; None: ambient.
-    speed : float or None
-        Before the first event [rad/s]; None: the scenario's highest.
-    radial_clearance : float or None
-        One of the scenario's [m]; None: the first.
-    events : tuple of TransientEvent
-    shaft : ShaftMaterial
-    bush : SolidMaterial
-        Of the bush or the pads.
-    tolerance : float
-        Of the temperatures in one time step [K].
+    duration : [s]
+    initial_temperature : Of shaft and bush in a cold start [K]; None: ambient.
+    speed : Before the first event [rad/s]; None: the scenario's highest.
+    radial_clearance : One of the scenario's [m]; None: the first.
+    bush : Of the bush or the pads.
+    tolerance : Of the temperatures in one time step [K].
     """
 
     duration: Duration

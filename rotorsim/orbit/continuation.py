@@ -229,12 +229,9 @@ def threshold(
 ) -> tuple[float, float, Array, ComplexArray] | None:
     """First speed at which the static position becomes unstable.
 
-    Returns
-    -------
-    speed, frequency : float
-        [rad/s]
-    position, shape : (n,) arrays
-        Static position [m] and the unstable mode there; or None: it stays stable.
+    Returns speed, frequency : float: [rad/s]
+    Returns position, shape : (n,) arrays: Static position [m] and the unstable mode there; or None:
+        it stays stable.
     """
 
     def least_stable(speed: float, guess: Array) -> tuple[complex, Array, ComplexArray]:

@@ -157,12 +157,9 @@ def _compiled_rates(
 def pack_loads(loads: Sequence[Load], rotor: Rotor) -> tuple[Array, Array]:
     """Pack loads into arrays for the compiled right-hand side.
 
-    Returns
-    -------
-    shapes : (k, 2, 2n) array
-        Amplitudes of the cosine and sine parts on every degree of freedom [N].
-    numbers : (k, 4) array
-        Kind, start, stop [s], frequency [rad/s].
+    Returns shapes : (k, 2, 2n) array: Amplitudes of the cosine and sine parts on every degree of
+        freedom [N].
+    Returns numbers : (k, 4) array: Kind, start, stop [s], frequency [rad/s].
     """
     size = rotor.mass.shape[0]
     shapes, numbers = np.zeros((len(loads), 2, size)), np.zeros((len(loads), 4))

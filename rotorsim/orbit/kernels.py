@@ -32,12 +32,8 @@ def _squeeze_integrals(eccentricity_ratio: float, angle: float) -> tuple[float, 
 
     Sommerfeld's substitution 1 - eps cos t = (1 - eps^2)/(1 + eps cos g) makes them elementary.
 
-    Parameters
-    ----------
-    eccentricity_ratio : float
-        Below 1.
-    angle : float
-        From the eccentricity to the squeeze velocity, in the direction of rotation [rad].
+    eccentricity_ratio : Below 1.
+    angle : From the eccentricity to the squeeze velocity, in the direction of rotation [rad].
     """
     eps = eccentricity_ratio
     root = math.sqrt(1.0 - eps * eps)
@@ -63,18 +59,10 @@ def short_bearing_impedance(
 ) -> tuple[float, float]:
     """Dimensionless film force on the journal, radial and tangential.
 
-    Parameters
-    ----------
-    eccentricity_ratio : float
-    angle : float
-        From the eccentricity to the squeeze velocity [rad].
-    slenderness : float
-        L/D [-].
-
-    Returns
-    -------
-    radial, tangential : float
-        In units of 2 mu |v_s| L (R/c)^3, along the eccentricity and 90 degrees ahead of it.
+    angle : From the eccentricity to the squeeze velocity [rad].
+    slenderness : L/D [-].
+    Returns radial, tangential : float: In units of 2 mu |v_s| L (R/c)^3, along the eccentricity and
+        90 degrees ahead of it.
     """
     radial, tangential = _squeeze_integrals(eccentricity_ratio, angle)
     factor = -2.0 * slenderness * slenderness

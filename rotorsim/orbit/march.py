@@ -115,17 +115,11 @@ def march(
 ) -> tuple[Array, Array, int, int, float, Array, Array, float]:  # fmt: skip
     """Integrate from `start` to `stop` and sample at `times` (m,).
 
-    Returns
-    -------
-    positions, velocities : (m, n) arrays
-    count : int
-        Samples that were reached.
-    status : int
-        `DONE`, `TOUCHED` or `STUCK`.
-    end, q, v : float and (n,) arrays
-        Where it stopped.
-    step : float
-        To go on with [s].
+    Returns positions, velocities : (m, n) arrays:
+    Returns count : int: Samples that were reached.
+    Returns status : int: `DONE`, `TOUCHED` or `STUCK`.
+    Returns end, q, v : float and (n,) arrays: Where it stopped.
+    Returns step : float: To go on with [s].
     """
     n = q.size
     out_q, out_v = np.empty((times.size, n)), np.empty((times.size, n))

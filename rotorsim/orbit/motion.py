@@ -299,10 +299,7 @@ def simulate_motion(
     consume : Called with each piece of some revolutions as soon as it is there.
     keep_revolutions : Keep the last so many revolutions only.
 
-    Returns
-    -------
-    Motion
-        With ``status``: never an exception for what happens in the run.
+    Returns: With ``status``: never an exception for what happens in the run.
     """
     pieces: deque[Motion] = deque()
     turns = 0.0

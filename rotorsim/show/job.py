@@ -43,12 +43,8 @@ def write_results(
 ) -> tuple[dict[str, list[Path]], list[str]]:
     """Write figures and recording.
 
-    Returns
-    -------
-    files : dict
-        ``figures`` and ``recording``, each the paths that were written.
-    problems : list of str
-        What could not be written, and why.
+    Returns files : dict: ``figures`` and ``recording``, each the paths that were written.
+    Returns problems : list of str: What could not be written, and why.
     """
     attempt = Attempts(announce)
 
@@ -245,12 +241,8 @@ def record_scenario(
 
     Without `table` one of the orbit's clearance is computed at some of the scenario's speeds.
 
-    Returns
-    -------
-    Path
-        The file written.
-    list of str
-        What is missing in it, and why.
+    Returns Path: The file written.
+    Returns list of str: What is missing in it, and why.
     """
     attempt = Attempts(announce)
     if table is None:

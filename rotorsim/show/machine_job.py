@@ -89,10 +89,7 @@ def write_motion(
 
     result : Its linear analysis, for the natural frequencies over speed.
 
-    Returns
-    -------
-    list of Path
-        The recording first.
+    Returns: The recording first.
     """
     from .figures.machine import machine_campbell
     from .figures.orbits import animate_machine

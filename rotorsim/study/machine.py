@@ -324,18 +324,10 @@ def thermal_models(description: MachineFile) -> list[str]:
 class MachineAnalysis:
     """A machine, or a variant of it, with one thermal model.
 
-    Parameters
-    ----------
-    variant : Variant
-    rotor : Rotor
-    model : str
-        Thermal model.
-    speeds : sequence of float
-        [rad/s]
-    sweep : callable
-        Operating points of cases at the speeds, case by case.
-    progress : callable
-        Called after each film that is solved otherwise.
+    model : Thermal model.
+    speeds : [rad/s]
+    sweep : Operating points of cases at the speeds, case by case.
+    progress : Called after each film that is solved otherwise.
     """
 
     def __init__(

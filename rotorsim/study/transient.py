@@ -203,10 +203,7 @@ def simulate_transient(
     keep_fields : Keep the film's fields of every moment.
     progress : Called with each moment found.
 
-    Raises
-    ------
-    InputError
-        The scenario has none.
+    Raises InputError: The scenario has none.
     """
     settings = scenario.transient
     if settings is None:

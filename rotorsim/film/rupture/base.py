@@ -77,24 +77,15 @@ class RuptureCondition(Protocol):
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve for the pressure of the operator's film.
 
-        Parameters
-        ----------
-        operator : FilmOperator
-        squeeze : (n, m) array, optional
-            dh/dt [m/s].
-        start : (n, m) bool array, optional
-            Cells taken as full in the first step (a neighbouring solution's).
-        region : (n,) int array, optional
-            Stretches of film (see `FilmMesh.region`), where a ruptured film must stay ruptured up
-            to the next inception.
-        frozen : (n, m) bool array, optional
-            The full cells, taken as given: one linear solve, `violations` telling what it leaves.
-
-        Returns
-        -------
-        FilmOperator
-            With the Couette flow that the ruptured film carries.
-        PressureSolution
+        squeeze : (n, m) array. dh/dt [m/s].
+        start : (n, m) bool array. Cells taken as full in the first step (a neighbouring
+            solution's).
+        region : (n,) int array. Stretches of film (see `FilmMesh.region`), where a ruptured film
+            must stay ruptured up to the next inception.
+        frozen : (n, m) bool array. The full cells, taken as given: one linear solve, `violations`
+            telling what it leaves.
+        Returns FilmOperator: With the Couette flow that the ruptured film carries.
+        Returns PressureSolution:
         """
         ...
 

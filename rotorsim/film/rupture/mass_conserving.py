@@ -40,18 +40,11 @@ class MixedFactor:
 
     In ruptured cells the solution is the liquid fraction (or its perturbation).
 
-    Parameters
-    ----------
-    matrix : array
-        Band matrix as LAPACK's gbtrf takes it, real or complex.
-    width : int
-        Of the band on each side.
-    order : (n,) int array
-        Columns of cells in the order of the band.
-    scale : float
-        Pressure per unit of the unknown in full cells [Pa].
-    full, film : (n, m) bool arrays
-        Full cells; cells outside the grooves.
+    matrix : array. Band matrix as LAPACK's gbtrf takes it, real or complex.
+    width : Of the band on each side.
+    order : (n,) int array. Columns of cells in the order of the band.
+    scale : Pressure per unit of the unknown in full cells [Pa].
+    full, film : (n, m) bool arrays. Full cells; cells outside the grooves.
     """
 
     matrix: NDArray[Any]
@@ -80,17 +73,10 @@ class MixedFactor:
         that exp(-s tau) of what came in leaves. (All of the cell changing at once, 1 + s tau for
         exp(s tau), would spread out what is carried far.)
 
-        Parameters
-        ----------
-        rate : (n, m) complex array
-            s times the volume of each cell [m3/s].
-
-        Returns
-        -------
-        MixedFactor
-        (n, m) complex array
-            Weight of what is added to each cell's continuity: of sources spread over a ruptured
-            cell, (exp(s tau) - 1)/(s tau).
+        rate : (n, m) complex array. s times the volume of each cell [m3/s].
+        Returns MixedFactor:
+        Returns (n, m) complex array: Weight of what is added to each cell's continuity: of sources
+            spread over a ruptured cell, (exp(s tau) - 1)/(s tau).
         """
         matrix = self.matrix.astype(complex)
         n, m = self.full.shape
@@ -123,10 +109,7 @@ class MixedFactor:
 class MassConserving:
     """The ruptured film carries on what oil left the full film, and re-forms where it is filled.
 
-    Parameters
-    ----------
-    supply : OilSupply or None
-        None: openings are full.
+    supply : None: openings are full.
     """
 
     supply: OilSupply | None = None
@@ -179,12 +162,8 @@ def _solve(
 ) -> tuple[FilmOperator, PressureSolution]:
     """Pressure and liquid fraction of the operator's film.
 
-    Returns
-    -------
-    FilmOperator
-        With the Couette flow scaled by the liquid fraction that it carries.
-    PressureSolution
-        Its `liquid` is the liquid fraction.
+    Returns FilmOperator: With the Couette flow scaled by the liquid fraction that it carries.
+    Returns PressureSolution: Its `liquid` is the liquid fraction.
     """
     film = ~operator.fixed
     if frozen is not None:

@@ -60,12 +60,8 @@ def write_report(found: Results, path: str | Path) -> Path:
 def report_page(found: Results, when: datetime.datetime | None = None) -> str:
     """Give the report as HTML that needs no other file and no network.
 
-    Parameters
-    ----------
-    found : Results
-        What `rotorsim.study.main_job.compute` gives.
-    when : datetime, optional
-        Date of the report; now by default.
+    found : What `rotorsim.study.main_job.compute` gives.
+    when : Date of the report; now by default.
     """
     body = "\n".join(part for part in _parts(found, when) if part)
     return document(found.scenario.title, body)
