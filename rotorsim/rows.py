@@ -86,6 +86,27 @@ def in_shown_unit(value: Any, unit: str) -> Any:
     return value * factor + zero
 
 
+def shown(value: float | None, unit: str, digits: int = 4) -> str:
+    """Short text of a value in `unit`, in the unit that is shown in its place; see `heads`."""
+    return number(None if value is None else in_shown_unit(value, unit), digits)
+
+
+def heads(*texts: str) -> tuple[str, ...]:
+    """Heads of columns that end in a unit, with the unit that is shown in its place.
+
+    Examples
+    --------
+    >>> heads("rpm", "load kN", "amplitude µm")
+    ('rpm', 'load kN', 'amplitude µm')
+    """
+    found = []
+    for text in texts:
+        ends = (unit for unit in _US if text.endswith(f" {unit}"))
+        unit = max(ends, key=len, default="")
+        found.append(text.removesuffix(unit) + shown_unit(unit)[0] if unit else text)
+    return tuple(found)
+
+
 def with_unit(value: float, unit: str, digits: int = 4) -> str:
     """Short text of a value in `unit`, written in the unit that is shown in its place."""
     return f"{number(in_shown_unit(value, unit), digits)} {shown_unit(unit)[0]}"

@@ -23,7 +23,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, eigvals
-from scipy.optimize import brentq
 
 from ..film.geometry import ROTATIONS, TRANSLATIONS, idle_pitches, pad_unknowns
 from ..film.linearization import DynamicStiffness, linearize
@@ -178,6 +177,8 @@ class FilmDynamics:
 
         There m nu^2 is a real eigenvalue of the reduced A(i nu).
         """
+        from scipy.optimize import brentq
+
         found: list[tuple[float, float]] = []
         values = self._threshold_misfits(_PAD_RATIOS)
         for i in np.flatnonzero(np.diff(np.sign(values)) * np.sign(values)[:-1]):

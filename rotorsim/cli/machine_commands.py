@@ -6,7 +6,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..rows import RPM, number
+from ..rows import RPM, heads, number, shown, with_unit
 from ..study import machine_tables as tables
 from .output import DONE, INCOMPLETE, Output, as_typed, film_progress, progress_bar
 from .tables import grid
@@ -49,18 +49,19 @@ def check_machine(output: Output, path: Path) -> int:
     output.document(document)
     if not (output.json or output.quiet):
         table = grid(loaded.title, "", "")
-        table.add_row("shaft", f"{number(beam.length * 1e3)} mm, {len(rotor.nodes)} nodes")
+        table.add_row("shaft", f"{with_unit(beam.length * 1e3, 'mm')}, {len(rotor.nodes)} nodes")
         moved = f"twice as many elements move the lowest frequencies by {number(100 * change, 2)} %"
         table.add_row("mesh, supports rigid", moved)
         weight = rotor.total_mass * STANDARD_GRAVITY / 1e3
-        table.add_row("mass of the rotor", f"{number(rotor.total_mass)} kg ({number(weight)} kN)")
+        mass = f"{with_unit(rotor.total_mass, 'kg')} ({with_unit(weight, 'kN')})"
+        table.add_row("mass of the rotor", mass)
         table.add_row("discs and added masses", str(len(beam.discs)))
         table.add_row(
             "speeds", f"{len(speeds)}, {speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm"
         )
-        supports = grid("Supports", "name", "at mm", "kind")
+        supports = grid("Supports", *heads("name", "at mm", "kind"))
         for name, entry in zip(names, loaded.support, strict=True):
-            supports.add_row(name, number(entry.at * 1e3), _kind(entry))
+            supports.add_row(name, shown(entry.at * 1e3, "mm"), _kind(entry))
         output.show(table, supports)
     _say_free(output, loaded)
     return DONE
@@ -206,12 +207,12 @@ def machine_limit_cycles(output: Output, path: Path) -> int:
     files = save_figures([("limit_cycles", branch_plot(branch, loaded.title))], folder)
     output.document(branch_document(branch) | {"figures": files})
     if not (output.json or output.quiet):
-        table = grid("Limit cycles", "rpm", "f/rev", *(f"{n} µm" for n in branch.names), "")
+        table = grid("Limit cycles", "rpm", "f/rev", *heads(*(f"{n} µm" for n in branch.names)), "")
         for i in range(0, branch.speed.size, max(1, branch.speed.size // 12)):
             table.add_row(
                 f"{branch.speed[i] * RPM:.0f}",
                 number(float(branch.frequency[i] / branch.speed[i]), 3),
-                *(number(float(size) * 1e6) for size in branch.amplitude[i]),
+                *(shown(float(size) * 1e6, "µm") for size in branch.amplitude[i]),
                 "stable" if branch.stable[i] else "unstable",
             )
         output.show(table, *(str(file) for file in files))
@@ -227,12 +228,12 @@ def _say_motion(output: Output, motion: Motion, files: list[Path]) -> int:
     document = motion_document(motion)
     output.document(document | {"recording": files[0], "figures": files[1:]})
     if not (output.json or output.quiet):
-        head = ("station", "max e/c", "amplitude µm", "whirl ratio", "outcome")
+        head = heads("station", "max e/c", "amplitude µm", "whirl ratio", "outcome")
         table = grid(f"Motion: {document['note']}", *head)
         for row in document["stations"]:
             ratio = row["max_eccentricity_ratio"] if row["film"] else None
             table.add_row(
-                row["station"], number(ratio, 3), number(row["amplitude"] * 1e6),
+                row["station"], number(ratio, 3), shown(row["amplitude"] * 1e6, "µm"),
                 number(row["whirl_frequency_ratio"], 3), row["status"].replace("_", " "),
             )  # fmt: skip
         output.show(table, *(str(file) for file in files[1:]))

@@ -52,7 +52,10 @@ def _head(symbol: str, unit: str) -> str:
 
 
 def grid(title: str, *columns: str) -> Table:
-    """Empty table: the first column to the left, the others to the right."""
+    """Empty table: the first column to the left, the others to the right.
+
+    A column without a name holds remarks, which wrap; numbers do not.
+    """
     from rich import box
 
     table = Table(
@@ -66,7 +69,8 @@ def grid(title: str, *columns: str) -> Table:
         pad_edge=False,
     )
     for index, column in enumerate(columns):
-        table.add_column(column, justify="right" if index else "left", no_wrap=True)
+        justify = "right" if index and column else "left"
+        table.add_column(column, justify=justify, no_wrap=bool(column))
     return table
 
 

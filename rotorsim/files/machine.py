@@ -49,6 +49,7 @@ from ..model.shaft import (
     Section,
 )
 from ..rotor import Beam, Rotor, beam_rotor, with_unbalance
+from ..rotor.beam import buckling_load
 from ..shipped import shipped_machines
 from ..text import printable
 from .formats import is_table, read_table
@@ -192,6 +193,13 @@ class MachineFile:
                 raise InputError(
                     "another support stands at this place; what acts beside it is a [[seal]]",
                     key=f"support[{i}].at",
+                )
+        if beam.axial_force < 0.0:
+            limit = buckling_load(beam, places)
+            if -beam.axial_force >= limit:
+                raise InputError(
+                    f"the shaft buckles at {-limit / 1e3:.4g} kN, its supports rigid",
+                    key="rotor.axial_force",
                 )
 
     @classmethod

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from ..model import Case, EccentricityTarget
 from ..status import SolveStatus
@@ -165,6 +164,8 @@ def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
 
 def _by_attitude(search: PadSearch, layers: LayerIntegrals) -> _Cold | None:
     """Look all round for the attitude at which the force opposes the load; None without one."""
+    from scipy.optimize import brentq
+
     search.held = True
 
     def misfit(angle: float) -> float:

@@ -6,7 +6,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-import control
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -20,6 +19,8 @@ from .matrices import first_order, massive_unknowns, state_matrix
 from .support import ConstantSupport
 
 if TYPE_CHECKING:
+    import control
+
     from ..bearing.interpolation import Coefficients
 
 
@@ -44,6 +45,8 @@ def _step_response(
     system: control.StateSpace, force: float, entry: int = 0, duration: float | None = None
 ) -> tuple[Array, Array]:
     """Times [s] and displacements (n_output, n) [m] after a force [N] sets in at one input."""
+    import control
+
     response = control.step_response(system, T=duration, input=entry, squeeze=False)
     return np.asarray(response.time), force * np.asarray(response.outputs)[:, 0, :]
 
@@ -78,6 +81,8 @@ class StateFeedback:
 
     def closed_loop(self, system: control.StateSpace) -> control.StateSpace:
         """Rotor with the unsaturated loop closed, same signals."""
+        import control
+
         _check_sizes(system, self.gain)
         return control.StateSpace(
             system.A - system.B @ self.gain, system.B, system.C, system.D,
@@ -108,6 +113,8 @@ def design_lqr(
         such regulator exists (these forces do not reach an unstable mode, or these outputs do not
         show it).
     """
+    import control
+
     for key, value in (
         ("displacement_scale", displacement_scale),
         ("velocity_scale", velocity_scale),
@@ -138,6 +145,8 @@ def _design_lqr_of_outputs(
     system: control.StateSpace, displacement: float, force: float, velocity: float, limit: float
 ) -> StateFeedback:
     """Regulator of any rotor, weighted by its outputs and their rates."""
+    import control
+
     a, b, c = (np.asarray(part) for part in (system.A, system.B, system.C))
     if 2 * system.ninputs >= system.nstates or not system.noutputs:
         raise InputError(
@@ -245,6 +254,8 @@ class LoopMargins:
 
 def loop_margins(system: control.StateSpace, feedback: StateFeedback, axis: int) -> LoopMargins:
     """Gain, phase and modulus margins of the loop at one input, `axis` (0: x, 1: y)."""
+    import control
+
     _check_sizes(system, feedback.gain)
     if axis not in range(system.ninputs):
         known = "0 (x) or 1 (y)" if system.ninputs == 2 else f"from 0 to {system.ninputs - 1}"
@@ -374,6 +385,8 @@ def state_space(
     InputError
         The mass or the speed is missing or no number, or massless nodes are not damped.
     """
+    import control
+
     if not isinstance(plant, Machine):
         finite_number(mass, "mass", "kg")
         film = ConstantSupport(plant.stiffness, plant.damping)

@@ -172,7 +172,7 @@ def _clearance_checks(
 
 def _stability_checks(curve: DecrementCurve, edition: str) -> list[Check]:
     """Level I stability: decrement at Q_A, and Q0 over Q_A."""
-    place = f"{curve.speed * RPM:.0f} rpm, Q_A = {curve.anticipated:.4g} N/m"
+    place = f"{curve.speed * RPM:.0f} rpm, Q_A = {curve.anticipated * 1e-6:.4g} MN/m"
     decrement = _judged(
         "decrement at the anticipated Q", place, curve.anticipated_decrement, ">=", 0.1, "",
         "0.1", edition,

@@ -6,15 +6,17 @@ Designed on a reduced machine, judged on the whole one.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import control
 import numpy as np
 
 from ..arrays import Array
 from ..errors import InputError
 from ..threads import on_one_blas_thread
 from .reduction import probing_frequencies, response
+
+if TYPE_CHECKING:
+    import control
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import control
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..threads import on_one_blas_thread
+
+if TYPE_CHECKING:
+    import control
 
 _DECAYING = 1e-9
 """Of the largest eigenvalue: slower modes count as unstable and are kept."""
@@ -52,6 +54,7 @@ def reduced(system: control.StateSpace, error: float = 1e-3, order: int | None =
     order : Of the stable part, in place of `error`.
     Raises InputError: The system has no state that decays.
     """
+    import control
     from scipy.linalg import schur, solve_continuous_lyapunov, solve_sylvester, svd
 
     a, b, c = (np.asarray(part, dtype=float) for part in (system.A, system.B, system.C))

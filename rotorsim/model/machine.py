@@ -42,19 +42,21 @@ class MatrixEntry(Leaf):
 
     quantity : Of its entries, a name in `rotorsim.units.QUANTITIES`.
     text : A valid one.
+    any_sign : Whether one value, or a pair, may be negative; rows of two may.
     """
 
     quantity: str
     text: str
+    any_sign: bool = False
 
     def read(self, value: object) -> Matrix:
         """Return the matrix [SI]."""
         if isinstance(value, str):
-            one = self._number(value)
+            one = self._direct(value)
             return (one, 0.0), (0.0, one)
         if isinstance(value, list) and len(value) == 2:
             if all(isinstance(part, str) for part in value):
-                return (self._number(value[0]), 0.0), (0.0, self._number(value[1]))
+                return (self._direct(value[0]), 0.0), (0.0, self._direct(value[1]))
             if all(isinstance(part, list) and len(part) == 2 for part in value):
                 (xx, xy), (yx, yy) = ([self._number(one) for one in row] for row in value)
                 return (xx, xy), (yx, yy)
@@ -64,6 +66,14 @@ class MatrixEntry(Leaf):
             f'[["{text}", "{text}"], ["{text}", "{text}"]]'
         )
 
+    def _direct(self, text: object) -> float:
+        number = self._number(text)
+        if number < 0.0 and not self.any_sign:
+            raise InputError(
+                "must not be negative; where that is meant, write the whole matrix, two rows of two"
+            )
+        return number
+
     def _number(self, text: object) -> float:
         return parse_quantity(text, self.quantity, example=self.text)
 
@@ -71,6 +81,9 @@ class MatrixEntry(Leaf):
 _StiffnessMatrix = Annotated[Matrix, MatrixEntry("stiffness", "10 MN/m")]
 _DampingMatrix = Annotated[Matrix, MatrixEntry("damping", "20 kN*s/m")]
 _MassMatrix = Annotated[Matrix, MatrixEntry("mass", "5 kg")]
+
+
+_AnyStiffness = Annotated[Matrix, MatrixEntry("stiffness", "10 MN/m", any_sign=True)]
 
 
 @dataclass(frozen=True)
@@ -255,7 +268,7 @@ class SealEntry:
     name: str = ""
     coefficients: str | None = None
     coefficients_bearing: str | None = None
-    stiffness: _StiffnessMatrix | None = None
+    stiffness: _AnyStiffness | None = None
     damping: _DampingMatrix | None = None
     mass: _MassMatrix | None = None
 

@@ -9,7 +9,6 @@ from typing import Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
-from scipy.optimize import root
 
 from ..arrays import Array
 from ..errors import InputError
@@ -234,6 +233,8 @@ def find_equilibrium(
     Newton-Powell on p with position = c p/sqrt(1 + p.p), which cannot leave the clearance; started
     from several eccentricities.
     """
+    from scipy.optimize import root
+
     clearance = force.radial_clearance
     weight = float(np.hypot(*load))
     if weight == 0.0:

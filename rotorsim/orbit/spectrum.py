@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from ..arrays import Array, ComplexArray
 from ..errors import InputError
@@ -151,6 +150,8 @@ def whirl_frequency_ratio(orbit: Orbit) -> float | None:
     The mean and the shaft's first four harmonics are fitted and removed, then the maximum of the
     continuous windowed transform is located: far finer than the distance of the lines.
     """
+    from scipy.optimize import minimize_scalar
+
     most = _MAX_REVOLUTIONS * orbit.samples_per_revolution
     turns, z, weights = _window(orbit.part(max(orbit.t.size - most, 0)))
     turns = turns - turns[0]

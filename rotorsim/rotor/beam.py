@@ -378,6 +378,28 @@ def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: in
     return float(np.max(np.abs(values[0] - values[1]) / np.maximum(values[1], floor)))
 
 
+def buckling_load(beam: Beam, supports: Sequence[float]) -> float:
+    """Compressive force [N] at which the shaft buckles between supports that do not give way.
+
+    supports : Places [m]. Infinite with fewer than two, or where a joint lets the shaft go.
+    """
+    from scipy.linalg import LinAlgError, eigh
+
+    if len(set(supports)) < 2:
+        return math.inf
+    free, pressed = (
+        beam_rotor(replace(beam, axial_force=force), supports) for force in (0.0, -1.0)
+    )
+    held = [free.first_unknown[node] + k for node in free.bearing_nodes for k in (0, 1)]
+    kept = np.setdiff1d(np.arange(len(free.stiffness)), held)
+    elastic = np.array(free.stiffness)[np.ix_(kept, kept)]
+    softening = elastic - np.array(pressed.stiffness)[np.ix_(kept, kept)]
+    try:
+        return 1.0 / float(eigh(softening, elastic, eigvals_only=True)[-1])
+    except LinAlgError:
+        return math.inf
+
+
 @dataclass(frozen=True)
 class _BothPlanes:
     """From matrices of one plane, on u, du/dz at each node from the left, to the rotor's.

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Indices
 from ..machine.branches import Modes
-from ..rows import RPM, ZERO_CELSIUS, number
+from ..rows import RPM, ZERO_CELSIUS, heads, number, shown, shown_unit, units_shown, with_unit
 from .lateral import LateralStudy
 from .machine import MachineResult, destabilised_by_heating
 from .sensitivity import Sensitivity
@@ -106,7 +106,7 @@ def mode_rows(result: MachineResult, count: int = 10) -> Rows:
 
 def support_rows(results: dict[str, MachineResult], every: bool = False) -> Iterator[Rows]:
     """Load and film of each bearing over speed."""
-    head = ("rpm", "load kN", "direction deg", "e/c", "h min µm", "T max degC", "status")
+    head = heads("rpm", "load kN", "direction deg", "e/c", "h min µm", "T max °C", "status")
     for model, result in results.items():
         for state in result.supports:
             if not state.points:
@@ -116,10 +116,10 @@ def support_rows(results: dict[str, MachineResult], every: bool = False) -> Iter
                 point = state.points[i]
                 rows.append((
                     f"{point.speed * RPM:.0f}",
-                    number(float(np.hypot(*state.load[i])) / 1e3),
+                    shown(float(np.hypot(*state.load[i])) / 1e3, "kN"),
                     number(math.degrees(float(state.direction[i])), 3),
-                    number(point.eccentricity_ratio), number(point.min_film_thickness * 1e6),
-                    number(point.max_temperature - ZERO_CELSIUS), point.status.value,
+                    number(point.eccentricity_ratio), shown(point.min_film_thickness * 1e6, "µm"),
+                    shown(point.max_temperature - ZERO_CELSIUS, "°C"), point.status.value,
                 ))  # fmt: skip
             yield Rows(f"{state.name}{_suffix(results, model)}", head, rows)
 
@@ -131,12 +131,12 @@ def peak_rows(study: LateralStudy) -> Iterator[Rows]:
         for peak in response.peaks:
             factor = peak.amplification_factor
             rows.append((
-                f"{peak.speed * RPM:.0f}", number(peak.amplitude * 1e6),
+                f"{peak.speed * RPM:.0f}", shown(peak.amplitude * 1e6, "µm"),
                 number(factor, 3) if factor is not None else "-", peak.note,
             ))  # fmt: skip
         if rows:
             title = f"Unbalance response peaks at {response.name}"
-            yield Rows(title, ("rpm", "amplitude µm", "AF", ""), rows)
+            yield Rows(title, heads("rpm", "amplitude µm", "AF", ""), rows)
 
 
 def check_rows(study: LateralStudy) -> Iterator[Rows]:
@@ -153,7 +153,9 @@ def check_rows(study: LateralStudy) -> Iterator[Rows]:
 
 
 def _shown(value: float | None, unit: str) -> str:
-    return f"{number(None if value is None else value * 1e6)} µm" if unit == "m" else number(value)
+    if unit != "m" or value is None:
+        return number(value)
+    return with_unit(value * 1e6, "µm")
 
 
 def sensitivity_rows(study: LateralStudy) -> Iterator[Rows]:
@@ -161,13 +163,13 @@ def sensitivity_rows(study: LateralStudy) -> Iterator[Rows]:
     if not study.decrement_curves:
         return
     rows = [
-        (f"{curve.speed * RPM:.0f}", number(curve.anticipated / 1e6),
+        (f"{curve.speed * RPM:.0f}", shown(curve.anticipated / 1e6, "MN/m"),
          number(float(curve.decrement[0]), 3), number(curve.anticipated_decrement, 3),
-         "above 10 000 Q_A" if curve.threshold is None else number(curve.threshold / 1e6),
+         "above 10 000 Q_A" if curve.threshold is None else shown(curve.threshold / 1e6, "MN/m"),
          "-" if curve.threshold is None else number(curve.threshold / curve.anticipated, 3))
         for curve in study.decrement_curves
     ]  # fmt: skip
-    head = ("rpm", "Q_A MN/m", "decrement without", "decrement at Q_A", "Q0 MN/m", "Q0/Q_A")
+    head = heads("rpm", "Q_A MN/m", "decrement without", "decrement at Q_A", "Q0 MN/m", "Q0/Q_A")
     yield Rows("Sensitivity to destabilising stiffness", head, rows)
 
 
@@ -202,7 +204,7 @@ def moving_rows(moving: Sequence[Sensitivity]) -> Iterator[Rows]:
         return
     rows = [
         (one.support, one.parameter.replace("_", " "), _change(one),
-         "-" if one.threshold_change is None else f"{one.threshold_change * RPM:+.0f}",
+         "-" if one.threshold_change is None else f"{round(one.threshold_change * RPM):+d}",
          f"{one.growth_rate_change:+.3g}")
         for one in moving
     ]  # fmt: skip
@@ -212,9 +214,11 @@ def moving_rows(moving: Sequence[Sensitivity]) -> Iterator[Rows]:
 
 def _change(one: Sensitivity) -> str:
     if one.parameter == "supply_temperature":
-        return f"{one.change:+g} K"
+        return (
+            f"+{number(one.change * shown_unit('°C')[1])} {'°F' if units_shown() == 'us' else 'K'}"
+        )
     if one.parameter == "destabilising_stiffness":
-        return f"{one.change / 1e6:+.3g} MN/m"
+        return f"+{with_unit(one.change / 1e6, 'MN/m', 3)}"
     return f"{one.change:+g}" if one.parameter == "preload" else f"{one.change / one.value:+.0%}"
 
 

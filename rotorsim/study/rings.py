@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import root_scalar
 
 from ..arrays import Array
 from ..bearing.drawing import STANDARD_GRAVITY
@@ -87,6 +86,8 @@ def ring_state(ring: FloatingRing, load: Array, speed: float) -> RingState:
 
     Raises InputError: A film carries the load at no place.
     """
+    from scipy.optimize import root_scalar
+
     inner, outer = ring_films(ring)
     drags = ring.drags
     under = np.asarray(load, dtype=float) + np.array([ring.mass * STANDARD_GRAVITY, 0.0])

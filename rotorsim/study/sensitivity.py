@@ -192,7 +192,10 @@ def _of_cross_stiffness(result: MachineResult, mode: _Mode) -> list[Sensitivity]
         node = node_at(rotor, entry.at)
         change = cross_stiffness(_SHARE * entry.anticipated).dynamic_stiffness(mode.value, 0.0)
         rate, threshold = mode.effects(change, list(rotor.planes[node]))
-        place = rotor.nodes[node].name or f"{entry.at:g} m"
+        disc = next(
+            (one for one in result.description.rotor.beam.discs if one.at == entry.at), None
+        )
+        place = (disc.name if disc else "") or f"at {entry.at * 1e3:g} mm"
         found.append(
             Sensitivity(place, "destabilising_stiffness", 0.0, _SHARE * entry.anticipated, rate,
                         threshold)

@@ -90,6 +90,9 @@ def test_grade_and_amount_of_unbalance():
         (SHAFT.replace("G2.5", "fine") + SPRINGS, "rotor.unbalance[0].grade"),
         (SHAFT.replace('"60 mm"', '"60 s"') + SPRINGS, "rotor.section[0].outer_diameter"),
         (SHAFT + SPRINGS + '[[probe]]\nat = "2 m"\n', "probe[0].at"),
+        (SHAFT + SPRINGS.replace('= "20 MN/m"', '= "-20 MN/m"'), "support[1].stiffness"),
+        (SHAFT + SPRINGS.replace('= "20 kN', '= "-20 kN'), "support[0].damping"),
+        (SHAFT.replace('"beam"', '"beam"\naxial_force = "-2 MN"') + SPRINGS, "rotor.axial_force"),
     ],
 )
 def test_bad_input_names_its_key(text, key):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from command_line import called
 
+from rotorsim import rows
 from rotorsim.files.machine import MachineFile, load_machine
 from rotorsim.study.lateral import lateral_study
 from rotorsim.study.machine import analyse_machine
@@ -105,3 +106,12 @@ def test_new_writes_a_machine_that_is_understood(tmp_path, monkeypatch, capsys):
     assert (again.returncode, "exists" in again.stderr) == (2, True)
     assert called(capsys, "new", "two", "--rotor", "jeffcott").returncode == 0
     assert called(capsys, "check", "two.toml").returncode == 0
+
+
+def test_heads_and_cells_follow_the_units_shown(monkeypatch):
+    monkeypatch.setattr(rows, "_shown_in", ["us"])
+    assert rows.heads("rpm", "load kN", "Q_A MN/m", "name") == (
+        "rpm", "load lbf", "Q_A klbf/in", "name"
+    )  # fmt: skip
+    assert rows.shown(25.4, "µm") == "1"
+    assert rows.shown(None, "µm") == "-"

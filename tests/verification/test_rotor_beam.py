@@ -11,7 +11,7 @@ from rotorsim.machine.support import ConstantSupport
 from rotorsim.machine.thresholds import critical_speeds, threshold_speeds
 from rotorsim.model.shaft import Coupling, Disc, Material, Section
 from rotorsim.rotor import Beam, Rotor, beam_rotor
-from rotorsim.rotor.beam import _shear_coefficient, mesh_change
+from rotorsim.rotor.beam import _shear_coefficient, buckling_load, mesh_change
 from rotorsim.threads import on_one_blas_thread
 
 STEEL = Material(210e9, 7800.0)
@@ -259,3 +259,12 @@ def test_a_massless_shaft_with_a_disc_is_a_jeffcott_rotor():
     found = modes(machine, 100.0).oscillating()
     wanted = np.sqrt(48.0 * BENDING / LENGTH**3 / 50.0)
     assert found.damped_frequency[0] == pytest.approx([wanted, wanted], rel=1e-4)
+
+
+def test_a_shaft_between_pins_buckles_at_eulers_load():
+    beam = uniform(16, shear=False)
+    euler = np.pi**2 * BENDING / LENGTH**2
+    assert buckling_load(beam, (0.0, LENGTH)) == pytest.approx(euler, rel=1e-6)
+    # a pin in the middle: two bays
+    assert buckling_load(beam, (0.0, 0.5 * LENGTH, LENGTH)) == pytest.approx(4 * euler, rel=1e-5)
+    assert buckling_load(beam, (0.0,)) == np.inf

@@ -22,7 +22,7 @@ from ...machine.peaks import ProbeResponse
 from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpeed
 from ...model.shaft import Disc, Section
 from ...rotor import Beam, Rotor
-from ...rows import RPM
+from ...rows import RPM, axis_title, in_shown_unit, with_unit
 from ...text import caption
 from .style import (
     MICRO,
@@ -320,14 +320,16 @@ def bode_at_probes(
     for number, one in enumerate(responses):
         look = series_style("", number)
         speed = one.speed * RPM
-        upper.plot(speed, one.amplitude * MICRO, label=caption(one.name), **look)
+        upper.plot(
+            speed, in_shown_unit(one.amplitude * MICRO, "µm"), label=caption(one.name), **look
+        )
         lag = np.full(one.phase.shape, np.nan)
         known = np.isfinite(one.phase)
         lag[known] = np.unwrap(one.phase[known])
         lower.plot(speed, np.degrees(lag), **look)
         for peak in one.peaks:
             factor = peak.amplification_factor
-            place = (peak.speed * RPM, peak.amplitude * MICRO)
+            place = (peak.speed * RPM, in_shown_unit(peak.amplitude * MICRO, "µm"))
             upper.plot(*place, "o", color=look["color"], mfc="w", ms=4.5, zorder=5)
             if factor is not None and factor >= 2.5:
                 upper.annotate(
@@ -336,7 +338,7 @@ def bode_at_probes(
                 )  # fmt: skip
     for axes in (upper, lower):
         _mark_range(axes, continuous)
-    upper.set(ylabel="amplitude, zero to peak [µm]", title=caption(title))
+    upper.set(ylabel=axis_title("amplitude, zero to peak", "µm"), title=caption(title))
     upper.set_ylim(bottom=0.0)
     lower.set(xlabel="shaft speed [rpm]", ylabel="phase lag [deg]")
     step = 30.0 if np.ptp(lower.get_ylim()) < 240.0 else 90.0
@@ -459,16 +461,16 @@ def decrement_over_stiffness(
         look = series_style("", number)
         label = f"{one.speed * RPM:.0f} rpm"
         if one.threshold is not None:
-            label += f", Q0 {one.threshold * 1e-6:.4g} MN/m"
-        ax.plot(one.stiffness * 1e-6, one.decrement, label=label, **look)
-        at = one.anticipated * 1e-6
+            label += f", Q0 {with_unit(one.threshold * 1e-6, 'MN/m')}"
+        ax.plot(in_shown_unit(one.stiffness * 1e-6, "MN/m"), one.decrement, label=label, **look)
+        at = in_shown_unit(one.anticipated * 1e-6, "MN/m")
         ax.plot(at, one.anticipated_decrement, "o", color=look["color"], mfc="w", zorder=5)
         ax.annotate("Q_A", (at, one.anticipated_decrement), xytext=(6, 6), fontsize=8,
                     textcoords="offset points")  # fmt: skip
     ax.axhline(0.1, color="#009E73", lw=1.0, ls="--", label="limit at Q_A: 0.1")
     ax.axhline(0.0, color="#8c1d2f", lw=1.0)
     ax.set(
-        xlabel="destabilising stiffness [MN/m]", ylabel="logarithmic decrement [-]",
+        xlabel=axis_title("destabilising stiffness", "MN/m"), ylabel="logarithmic decrement [-]",
         title=caption(title),
     )  # fmt: skip
     ax.legend(loc="best")

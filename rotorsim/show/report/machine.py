@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...atomic import write_text
-from ...rows import RPM, Row, facts_html, number, table_html
+from ...rows import RPM, Row, facts_html, heads, number, shown, table_html, with_unit
 from ...study import machine_tables as tables
 from . import html
 
@@ -153,14 +153,14 @@ def _rotor(last: MachineResult) -> str:
     beam = machine.rotor.beam
     speeds = machine.operating.speeds
     rows = [
-        Row("length", f"{number(beam.length * 1e3)} mm"),
-        Row("mass", f"{number(rotor.total_mass)} kg"),
+        Row("length", with_unit(beam.length * 1e3, "mm")),
+        Row("mass", with_unit(rotor.total_mass, "kg")),
         Row("elements", f"{len(rotor.nodes) - 1}, {'Timoshenko' if beam.shear else 'Rayleigh'}"),
         Row("Young's modulus", f"{number(beam.material.youngs_modulus / 1e9)} GPa"),
         Row("density", f"{number(beam.material.density)} kg/m³"),
         Row("rotation from the left", "clockwise" if beam.clockwise else "counterclockwise"),
         Row("internal damping", f"{number(beam.internal_damping * 1e6)} µs"),
-        Row("axial force", f"{number(beam.axial_force / 1e3)} kN"),
+        Row("axial force", with_unit(beam.axial_force / 1e3, "kN")),
         Row("speeds", f"{speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm, {len(speeds)}"),
     ]
     continuous = machine.operating.continuous
@@ -174,27 +174,28 @@ def _rotor(last: MachineResult) -> str:
 def _shaft_tables(last: MachineResult) -> str:
     beam = last.description.rotor.beam
     sections = [
-        (str(number_), number(beam.span(one)[0] * 1e3), number(one.length * 1e3),
+        (str(number_), shown(beam.span(one)[0] * 1e3, "mm"), shown(one.length * 1e3, "mm"),
          _taper(one.outer_diameter, one.outer_right), _taper(one.inner_diameter, one.inner_right),
          str(one.layer) + ("" if one.stiffness else ", mass alone"))
         for number_, one in enumerate(beam.sections, start=1)
     ]  # fmt: skip
-    head = ("section", "from mm", "length mm", "outer mm", "inner mm", "layer")
+    head = heads("section", "from mm", "length mm", "outer mm", "inner mm", "layer")
     discs = [
-        (one.name or "-", number(one.at * 1e3), number(one.mass), number(one.polar_inertia),
+        (one.name or "-", shown(one.at * 1e3, "mm"), shown(one.mass, "kg"),
+         number(one.polar_inertia),
          number(one.transverse_inertia))
         for one in beam.discs
     ]  # fmt: skip
     wide = [table_html(head, sections, "Sections", texts=0)]
     if discs:
-        head = ("disc", "at mm", "mass kg", "polar kg m²", "transverse kg m²")
+        head = heads("disc", "at mm", "mass kg", "polar kg m²", "transverse kg m²")
         wide.append(table_html(head, discs, "Discs and added masses"))
     return "\n".join(f'<div class="wide">{one}</div>' for one in wide)
 
 
 def _taper(left: float, right: float) -> str:
-    text = number(left * 1e3)
-    return text if left == right else f"{text} to {number(right * 1e3)}"
+    text = shown(left * 1e3, "mm")
+    return text if left == right else f"{text} to {shown(right * 1e3, 'mm')}"
 
 
 def _bearings(results: dict[str, MachineResult]) -> str:
@@ -204,26 +205,28 @@ def _bearings(results: dict[str, MachineResult]) -> str:
         for state, entry in zip(result.supports, result.description.support, strict=True):
             top = float(result.speeds[-1])
             load = float(np.hypot(*state.load[-1]))
-            row = [state.name, number(entry.at * 1e3), model, number(load / 1e3)]
+            row = [state.name, shown(entry.at * 1e3, "mm"), model, shown(load / 1e3, "kN")]
             row.append(number(math.degrees(float(state.direction[-1])), 3))
             if state.points:
                 point = state.points[-1]
                 k, c = point.stiffness / 1e6, point.damping / 1e3
                 row += [
-                    number(point.eccentricity_ratio, 3), number(point.min_film_thickness * 1e6, 3),
-                    number(point.max_pressure / 1e6, 3),
-                    number(point.max_temperature - 273.15, 3), number(point.power_loss / 1e3, 3),
-                    _four(k), _four(c), point.status.value,
+                    number(point.eccentricity_ratio, 3),
+                    shown(point.min_film_thickness * 1e6, "µm", 3),
+                    shown(point.max_pressure / 1e6, "MPa", 3),
+                    shown(point.max_temperature - 273.15, "°C", 3),
+                    shown(point.power_loss / 1e3, "kW", 3),
+                    _four(k, "MN/m"), _four(c, "kN s/m"), point.status.value,
                 ]  # fmt: skip
             elif entry.stiffness is not None:
                 k, c = (
                     np.array(one or np.zeros((2, 2))) for one in (entry.stiffness, entry.damping)
                 )
-                row += [*["-"] * 5, _four(k / 1e6), _four(c / 1e3), "constants"]
+                row += [*["-"] * 5, _four(k / 1e6, "MN/m"), _four(c / 1e3, "kN s/m"), "constants"]
             else:
                 row += [*["-"] * 7, "table"]
             rows.append(row)
-    head = (
+    head = heads(
         "name", "at mm", "model", "load kN", "direction °", "e/c", "h_min µm", "p_max MPa",
         "T_max °C", "loss kW", "K xx/xy/yx/yy MN/m", "C xx/xy/yx/yy kN s/m", "status",
     )  # fmt: skip
@@ -234,8 +237,8 @@ def _bearings(results: dict[str, MachineResult]) -> str:
     return note + f'<div class="wide">{table_html(head, rows, f"At {top * RPM:.0f} rpm")}</div>'
 
 
-def _four(matrix: np.ndarray) -> str:
-    return " / ".join(number(float(one), 3) for one in matrix.ravel())
+def _four(matrix: np.ndarray, unit: str) -> str:
+    return " / ".join(shown(float(one), unit, 3) for one in matrix.ravel())
 
 
 def _statics(last: MachineResult) -> str:
@@ -247,7 +250,8 @@ def _statics(last: MachineResult) -> str:
     at = rotor.nodes[place].position
     return html.paragraph(
         f"Largest static displacement of the shaft along x at the highest speed: "
-        f"{number(float(sag[place]) * 1e6)} µm, {number(at * 1e3)} mm from the left end."
+        f"{with_unit(float(sag[place]) * 1e6, 'µm')}, {with_unit(at * 1e3, 'mm')} from the left "
+        "end."
     )
 
 
