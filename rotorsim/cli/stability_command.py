@@ -450,7 +450,7 @@ def _show_machine_tolerances(
     from ..files.machine import load_machine
     from ..files.parameters import held_values
     from ..model.machine import MachineTolerances
-    from ..study.tolerances import study_machine_tolerances
+    from ..study.tolerances import study_tolerances
 
     machine = load_machine(source)
     held = held_values(machine, _named_texts(hold, "--hold"), "--hold")
@@ -470,7 +470,7 @@ def _show_machine_tolerances(
         cluster(work.scheduler, work.output) as executor,
         _sample_progress(work.output) as progress,
     ):
-        study = study_machine_tolerances(
+        study = study_tolerances(
             machine, settings, operating_speed=speeds[0] if speeds else None,
             thermal_model=work.model, mesh=work.mesh_size, executor=executor,
             workers=None if executor is not None else work.workers, progress=progress,

@@ -29,7 +29,7 @@ from .machine import (
     solve_films_together,
     thermal_models,
 )
-from .planes import Plane, solved_speeds, with_mesh
+from .planes import Plane, machine_with_mesh, solved_speeds
 from .sweep import Progress, available_cores, map_on_processes, sweep_points
 
 if TYPE_CHECKING:
@@ -87,9 +87,7 @@ def map_of_machine(
     for one in axes:
         if one in fixed:
             raise InputError("is an axis of the map and cannot be held as well", key=one.name)
-    if mesh is not None:
-        bearings = {name: with_mesh(one, mesh) for name, one in machine.bearings.items()}
-        machine = machine.with_parts(bearings=bearings)
+    machine = machine_with_mesh(machine, mesh)
     base = Variant(machine)
     for one, value in fixed.items():
         base = one.applied(base, value)

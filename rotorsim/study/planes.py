@@ -27,11 +27,10 @@ from ..model import (
 from ..rows import Quantity, quantity
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     import xarray as xr
 
     from ..bearing.table import CoefficientTable
+    from ..files.machine import MachineFile
     from ..files.scenario import Scenario
     from .sweep import Progress
 
@@ -327,6 +326,14 @@ def _with_viscosity(case: Case, factor: float) -> Case:
 def with_mesh(scenario: Scenario, mesh: MeshSize) -> Scenario:
     """`scenario` on another mesh."""
     return dataclasses.replace(scenario, film=dataclasses.replace(scenario.film, mesh=mesh))
+
+
+def machine_with_mesh(machine: MachineFile, mesh: MeshSize | None) -> MachineFile:
+    """`machine` with its bearings on another mesh."""
+    if mesh is None:
+        return machine
+    bearings = {name: with_mesh(one, mesh) for name, one in machine.bearings.items()}
+    return machine.with_parts(bearings=bearings)
 
 
 def changed(case: Case, values: Mapping[str, float]) -> Case:

@@ -3,35 +3,41 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..arrays import Array
+from ..bearing.operating_point import OperatingPoint
 from ..errors import InputError
+from ..files.machine import MachineFile
 from ..files.parameters import Parameter, Variant, spreads
 from ..machine.machine import Machine
-from ..machine.modes import machine_spectrum, modes
+from ..machine.modes import machine_spectrum
 from ..machine.support import ConstantSupport, MatrixTable, Support, TableSupport
-from ..machine.thresholds import ThresholdSpeed, find_thresholds, threshold_speeds
+from ..machine.thresholds import ThresholdSpeed, find_thresholds
 from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
 from ..model import Case, LoadTarget, MeshSize
 from ..model.machine import MachineTolerances
-from ..model.tolerances import NORMAL_REACH, Spread
+from ..model.tolerances import NORMAL_REACH, Spread, ToleranceSettings
 from ..rotor import Rotor
 from ..rows import RPM
-from .machine import MachineAnalysis, MachineResult, SupportState, thermal_models
-from .planes import changed, with_mesh
-from .sweep import model_digest, refuse_other_sources, sweep_points
+from .machine import MachineAnalysis, SupportState, thermal_models
+from .planes import changed, machine_with_mesh, with_mesh
+from .sweep import (
+    available_cores,
+    map_on_processes,
+    model_digest,
+    refuse_other_sources,
+    sweep_points,
+)
 
 if TYPE_CHECKING:
-    from ..bearing.operating_point import OperatingPoint
-    from ..files.machine import MachineFile
     from ..files.scenario import Scenario
-    from ..model.tolerances import ToleranceSettings
 
 _INPUTS = {
     "radial_clearance": "radial_clearance",
@@ -43,7 +49,8 @@ _INPUTS = {
 _SPEEDS = 6
 _REFINEMENTS = 2
 _BATCH = 4
-_State = TypeVar("_State")
+_Solve = Callable[[Sequence[float]], dict[float, Any]]
+_Assemble = Callable[[Mapping[float, Any]], Machine]
 
 
 def _failure(point: OperatingPoint) -> str:
@@ -54,9 +61,67 @@ def _failure(point: OperatingPoint) -> str:
     )
 
 
+class _Threshold(ABC):
+    """From sampled inputs to thresholds, by solving the films: the function that is propagated."""
+
+    rotor: Rotor
+    operating_speed: float
+    speeds: tuple[float, ...]
+
+    @abstractmethod
+    def films(self, sample: Mapping[str, float]) -> tuple[_Solve, _Assemble]:
+        """How a sample is solved at ascending speeds [rad/s], and the machine on what comes of it.
+
+        Solving raises SampleError: A film or the static equilibrium did not converge.
+        """
+
+    def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
+        """Thresholds of one sample.
+
+        Returns: ``growth_rate`` at the operating speed [1/s], above 0 where unstable;
+            ``threshold_speed`` [rad/s], the lowest at which the rotor loses its stability, None
+            where none lies within the speeds; ``stable_throughout`` and ``unstable_throughout``,
+            1 or 0; of one film ``critical_mass`` of a rigid rotor at the operating speed [kg] and
+            its ``whirl_frequency_ratio``, None without a threshold.
+        """
+        solve, assemble = self.films(sample)
+        states = solve(sorted({*self.speeds, self.operating_speed}))
+        crossings = _crossings(assemble, states)
+        for _ in range(_REFINEMENTS):
+            # The film is solved where the threshold was found, which makes it exact there.
+            lost = next((c.speed for c in crossings if c.becomes_unstable), None)
+            if lost is None or min(abs(lost / s - 1.0) for s in states) < 1e-4:
+                break
+            states |= solve([lost])
+            crossings = _crossings(assemble, states)
+        rates = {speed: _growth(assemble({speed: state}), speed) for speed, state in states.items()}
+        found: dict[str, float | None] = {
+            "growth_rate": rates[self.operating_speed],
+            "threshold_speed": next((c.speed for c in crossings if c.becomes_unstable), None),
+            "stable_throughout": float(max(rates.values()) < 0.0),
+            "unstable_throughout": float(min(rates.values()) >= 0.0),
+        }
+        at = states[self.operating_speed]
+        if isinstance(at, OperatingPoint):
+            found["critical_mass"] = at.critical_mass
+            found["whirl_frequency_ratio"] = at.whirl_frequency_ratio
+        return found
+
+
+def _crossings(assemble: _Assemble, states: Mapping[float, Any]) -> list[ThresholdSpeed]:
+    speeds = np.array(sorted(states))
+    return find_thresholds(machine_spectrum(assemble(states), speeds), speeds)
+
+
+def _growth(machine: Machine, speed: float) -> float:
+    """Growth rate of the least stable mode [1/s]."""
+    found = machine_spectrum(machine, np.array([speed]))(speed)
+    return math.nan if found is None else found.leading.real
+
+
 @dataclass(frozen=True)
-class _FilmThreshold:
-    """From sampled inputs to thresholds, by solving the film: the function that is propagated.
+class _FilmThreshold(_Threshold):
+    """A rotor on identical bearings of one film.
 
     operating_speed : [rad/s]
     speeds : Between which the threshold is looked for, ascending [rad/s].
@@ -67,83 +132,27 @@ class _FilmThreshold:
     operating_speed: float
     speeds: tuple[float, ...]
 
-    def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
-        """Thresholds of one sample.
-
-        sample : ``radial_clearance`` [m], ``viscosity`` (a factor), ``load`` [N],
-            ``supply_temperature`` [K].
-        Returns: ``growth_rate`` at the operating speed [1/s], above 0 where unstable;
-            ``critical_mass`` of a rigid rotor there [kg] and its ``whirl_frequency_ratio``, None
-            without a threshold; ``threshold_speed`` [rad/s], the lowest at which the rotor loses
-            its stability, None where none lies within the speeds; ``stable_throughout`` and
-            ``unstable_throughout``, 1 or 0.
-        Raises SampleError: The film did not converge.
-        """
-        case = changed(self.case, {_INPUTS[name]: value for name, value in sample.items()})
-        found, points = _search(
-            lambda speeds: self._along(case, speeds), self._growth, self._thresholds,
-            self.operating_speed, self.speeds,
-        )  # fmt: skip
-        at = points[self.operating_speed]
-        return {
-            **found,
-            "critical_mass": at.critical_mass,
-            "whirl_frequency_ratio": at.whirl_frequency_ratio,
-        }
-
-    def _along(self, case: Case, speeds: Sequence[float]) -> dict[float, OperatingPoint]:
-        """Points at ascending speeds, each starting from the one before."""
+    def films(self, sample: Mapping[str, float]) -> tuple[_Solve, _Assemble]:
+        """One film; a sample has the names of a scenario's ``[tolerances]``, SI."""
         from ..bearing.solve import solve_case
 
-        points, warm = {}, None
-        for speed in speeds:
-            point, warm = solve_case(case, speed, initial=warm)
-            if not point.converged:
-                raise SampleError(_failure(point))
-            points[speed] = point
-        return points
+        case = changed(self.case, {_INPUTS[name]: value for name, value in sample.items()})
 
-    def _growth(self, point: OperatingPoint) -> float:
-        """Largest real part of the eigenvalues [1/s]."""
-        film = _support({point.speed: point})
-        found = modes(Machine.on_identical(self.rotor, film), point.speed)
-        return float(found.largest_growth_rate[0])
+        def solve(speeds: Sequence[float]) -> dict[float, OperatingPoint]:
+            points, warm = {}, None
+            for speed in speeds:
+                point, warm = solve_case(case, speed, initial=warm)
+                if not point.converged:
+                    raise SampleError(_failure(point))
+                points[speed] = point
+            return points
 
-    def _thresholds(self, points: Mapping[float, OperatingPoint]) -> list[ThresholdSpeed]:
-        machine = Machine.on_identical(self.rotor, _support(points))
-        return threshold_speeds(machine, subdivisions=1)
-
-
-def _search(
-    solve: Callable[[Sequence[float]], dict[float, _State]],
-    growth: Callable[[_State], float],
-    thresholds: Callable[[Mapping[float, _State]], list[ThresholdSpeed]],
-    operating_speed: float,
-    speeds: Sequence[float],
-) -> tuple[dict[str, float | None], dict[float, _State]]:
-    """Growth rate at the operating speed, the lowest threshold, and the states at the speeds."""
-    states = solve(sorted({*speeds, operating_speed}))
-    crossings = thresholds(states)
-    for _ in range(_REFINEMENTS):
-        # The film is solved where the threshold was found, which makes it exact there.
-        lost = next((c.speed for c in crossings if c.becomes_unstable), None)
-        if lost is None or min(abs(lost / s - 1.0) for s in states) < 1e-4:
-            break
-        states |= solve([lost])
-        crossings = thresholds(states)
-    rates = [growth(state) for state in states.values()]
-    found = [c.speed for c in crossings if c.becomes_unstable]
-    return {
-        "growth_rate": growth(states[operating_speed]),
-        "threshold_speed": found[0] if found else None,
-        "stable_throughout": float(max(rates) < 0.0),
-        "unstable_throughout": float(min(rates) >= 0.0),
-    }, states
+        return solve, lambda points: Machine.on_identical(self.rotor, _support(points))
 
 
 @dataclass(frozen=True)
-class MachineThreshold:
-    """From sampled parameters of a machine to its thresholds, by solving its films.
+class _MachineThreshold(_Threshold):
+    """A machine.
 
     parameters : By the names that samples use.
     operating_speed : [rad/s]
@@ -153,71 +162,53 @@ class MachineThreshold:
     machine: MachineFile
     parameters: Mapping[str, Parameter]
     thermal_model: str
+    rotor: Rotor
     operating_speed: float
     speeds: tuple[float, ...]
 
-    def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
-        """Thresholds of one sample: as `FilmThreshold`, without a critical mass.
-
-        Raises SampleError: A film or the static equilibrium did not converge.
-        """
+    def films(self, sample: Mapping[str, float]) -> tuple[_Solve, _Assemble]:
+        """All films of the machine."""
         variant = Variant(self.machine)
         for name, value in sample.items():
             variant = self.parameters[name].applied(variant, value)
         places = [at for one in self.parameters.values() for at in one.places]
         rotor = variant.machine.rotor_with_unbalance(more=places)
 
-        def solve(speeds: Sequence[float]) -> dict[float, _MachineAt]:
-            analysis = MachineAnalysis(variant, rotor, self.thermal_model, speeds, _swept_here)
-            found = analysis.result()
+        def analysis(speeds: Sequence[float]) -> MachineAnalysis:
+            return MachineAnalysis(variant, rotor, self.thermal_model, speeds, _swept_here)
+
+        def solve(speeds: Sequence[float]) -> dict[float, list[SupportState]]:
+            found = analysis(speeds).result()
             for state in found.supports:
                 for point in state.points:
                     if not point.converged:
                         raise SampleError(f"{state.name}: {_failure(point)}")
             if not found.converged:
                 raise SampleError("no static equilibrium")
-            return {speed: _MachineAt(analysis, found, k) for k, speed in enumerate(speeds)}
+            return {
+                speed: [
+                    SupportState(one.name, one.load[k : k + 1], one.points[k : k + 1])
+                    for one in found.supports
+                ]
+                for k, speed in enumerate(speeds)
+            }
 
-        return _search(
-            solve, _MachineAt.growth, _machine_thresholds, self.operating_speed, self.speeds
-        )[0]
+        def assemble(states: Mapping[float, list[SupportState]]) -> Machine:
+            speeds = sorted(states)
+            joined = [
+                SupportState(
+                    parts[0].name, np.concatenate([one.load for one in parts]),
+                    tuple(point for one in parts for point in one.points),
+                )
+                for parts in zip(*(states[speed] for speed in speeds), strict=True)
+            ]  # fmt: skip
+            return analysis(speeds).assembled(joined)
+
+        return solve, assemble
 
 
 def _swept_here(cases: list[Case], speeds: list[float]) -> list[OperatingPoint]:
     return sweep_points(cases, speeds, workers=1)
-
-
-class _MachineAt(NamedTuple):
-    """A solved machine at the k-th of its speeds."""
-
-    analysis: MachineAnalysis
-    result: MachineResult
-    place: int
-
-    def growth(self) -> float:
-        """Growth rate of the least stable mode [1/s]."""
-        speed = self.result.speeds[self.place]
-        found = machine_spectrum(self.result.machine, np.array([speed]))(float(speed))
-        return math.nan if found is None else found.leading.real
-
-
-def _machine_thresholds(states: Mapping[float, _MachineAt]) -> list[ThresholdSpeed]:
-    speeds = sorted(states)
-    first = states[speeds[0]]
-    parts = [[(states[s].result.supports[i], states[s].place) for s in speeds]
-             for i in range(len(first.result.supports))]  # fmt: skip
-    supports = [
-        SupportState(
-            part[0][0].name, np.array([state.load[k] for state, k in part]),
-            tuple(state.points[k] for state, k in part if state.points),
-        )
-        for part in parts
-    ]  # fmt: skip
-    analysis = MachineAnalysis(
-        first.analysis.variant, first.analysis.rotor, first.analysis.model, speeds, _swept_here
-    )
-    machine, along = analysis.assembled(supports), np.array(speeds)
-    return find_thresholds(machine_spectrum(machine, along), along)
 
 
 def _support(points: Mapping[float, OperatingPoint]) -> Support:
@@ -270,8 +261,8 @@ class ToleranceStudy:
 
 
 def study_tolerances(
-    scenario: Scenario,
-    settings: ToleranceSettings | None = None,
+    source: Scenario | MachineFile,
+    settings: ToleranceSettings | MachineTolerances | None = None,
     *,
     rotor: Rotor | None = None,
     operating_speed: float | None = None,
@@ -282,70 +273,76 @@ def study_tolerances(
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> ToleranceStudy:
-    """Sample the tolerances, solve the film for every sample, and say what it means.
+    """Sample the tolerances, solve the films for every sample, and say what it means.
 
-    settings : The scenario's ``[tolerances]`` by default.
-    rotor : The scenario's by default.
-    operating_speed : [rad/s]; by default the orbit's where it is constant, else the highest.
-    radial_clearance, thermal_model : Which of the scenario's; by default the only clearance, and
-        ``thd`` where there is a choice.
-    mesh : In place of the scenario's.
+    settings : The file's ``[tolerances]`` by default.
+    rotor : The scenario's by default; a machine has its own.
+    operating_speed : [rad/s]. By default of a scenario the orbit's where it is constant, else the
+        highest; of a machine that of the settings, the highest continuous one, or the highest.
+    radial_clearance : Which of a scenario's; by default the only one.
+    thermal_model : By default ``thd`` where there is a choice.
+    mesh : In place of the file's.
     executor : Where to compute; by default processes on this machine.
     workers : Number of processes; 1 computes in this one.
     progress : ``progress(done, total)`` in samples.
-    Raises InputError: No tolerances, no rotor, or a spread that reaches below zero.
+    Raises InputError: No tolerances, no rotor, a parameter without a value to spread about, or a
+        spread that reaches below zero.
     """
-    settings = settings or scenario.tolerances
+    settings = settings or source.tolerances
     if settings is None:
-        raise InputError(
-            'is missing: write for example [tolerances] radial_clearance = "5 um"', key="tolerances"
-        )
-    rotor = rotor or scenario.rotor
-    if rotor is None:
-        raise InputError("is missing: thresholds need a rotor", key="rotor")
-    scenario = scenario if mesh is None else with_mesh(scenario, mesh)
-    models = [str(model) for model in scenario.thermal_models]
-    model = thermal_model or ("thd" if "thd" in models else models[0])
-    case = scenario.case(radial_clearance, model)
-    speed = operating_speed or _operating_speed(scenario)
-    function = _FilmThreshold(case, rotor, speed, _search_speeds(scenario.speeds, speed))
-    tolerances = _tolerances_of(case, settings)
-    mapper = _mapper(executor, workers, progress)
-    return _studied(
-        function, tolerances, settings.samples, settings.seed, mapper, model,
-        case.bearing.radial_clearance, rotor, speed,
-    )  # fmt: skip
-
-
-def study_machine_tolerances(
-    machine: MachineFile,
-    settings: MachineTolerances | None = None,
-    *,
-    operating_speed: float | None = None,
-    thermal_model: str | None = None,
-    mesh: MeshSize | None = None,
-    executor: Executor | None = None,
-    workers: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> ToleranceStudy:
-    """Sample the tolerances of a machine's parameters, solve its films for every sample.
-
-    settings : The file's ``[tolerances]`` by default.
-    operating_speed : [rad/s]; by default that of the settings, the highest continuous one, or the
-        highest.
-    thermal_model, mesh, executor, workers, progress : As for `study_tolerances`.
-    Raises InputError: No tolerances, a parameter without a value to spread about, or a spread that
-        reaches below zero.
-    """
-    settings = settings or machine.tolerances
-    if settings is None:
-        example = f'spread = {{ "{next(iter(machine.bearings), "left")}.clearance" = "5 um" }}'
+        example = 'radial_clearance = "5 um"'
+        if isinstance(source, MachineFile):
+            example = f'spread = {{ "{next(iter(source.bearings), "left")}.clearance" = "5 um" }}'
         raise InputError(f"is missing: write for example [tolerances] {example}", key="tolerances")
-    if mesh is not None:
-        bearings = {name: with_mesh(one, mesh) for name, one in machine.bearings.items()}
-        machine = machine.with_parts(bearings=bearings)
+    if isinstance(source, MachineFile):
+        assert isinstance(settings, MachineTolerances)
+        function, tolerances = _of_machine(source, settings, operating_speed, thermal_model, mesh)
+        model, clearance = function.thermal_model, None
+    else:
+        assert isinstance(settings, ToleranceSettings)
+        scenario = source if mesh is None else with_mesh(source, mesh)
+        rotor = rotor or scenario.rotor
+        if rotor is None:
+            raise InputError("is missing: thresholds need a rotor", key="rotor")
+        models = [str(model) for model in scenario.thermal_models]
+        model = thermal_model or ("thd" if "thd" in models else models[0])
+        case = scenario.case(radial_clearance, model)
+        clearance = case.bearing.radial_clearance
+        speed = operating_speed or _operating_speed(scenario)
+        function = _FilmThreshold(case, rotor, speed, _search_speeds(scenario.speeds, speed))
+        tolerances = _tolerances_of(case, settings)
+    try:
+        nominal = function({name: t.nominal for name, t in tolerances.items()})
+    except SampleError as error:
+        raise InputError(f"without any deviation {error}", key="tolerances") from error
+    mapper = _mapper(executor, workers, progress)
+    samples = propagate(function, tolerances, settings.samples, seed=settings.seed, mapper=mapper)
+    if len(samples.failures) == len(next(iter(samples.inputs.values()))):
+        raise InputError(f"no sample could be solved: {samples.failures[0][1]}", key="tolerances")
+    p, error = samples.probability_above("growth_rate", 0.0)
+    return ToleranceStudy(
+        thermal_model=model,
+        radial_clearance=clearance,
+        rotor=function.rotor,
+        operating_speed=function.operating_speed,
+        tolerances=tolerances,
+        nominal=nominal,
+        samples=samples,
+        probability_of_instability=p,
+        standard_error=error,
+        importance=samples.importance("growth_rate"),
+        share_of_variance=samples.first_order_index("growth_rate"),
+        explained_variance=samples.explained_variance("growth_rate"),
+    )
+
+
+def _of_machine(
+    machine: MachineFile, settings: MachineTolerances, operating_speed: float | None,
+    model: str | None, mesh: MeshSize | None,
+) -> tuple[_MachineThreshold, dict[str, Tolerance]]:  # fmt: skip
+    machine = machine_with_mesh(machine, mesh)
     known = thermal_models(machine)
-    model = known[-1] if thermal_model is None else thermal_model
+    model = known[-1] if model is None else model
     if model not in known:
         raise InputError(f"must be one of {', '.join(known)}", key="thermal_model", value=model)
     operating = machine.operating
@@ -358,47 +355,11 @@ def study_machine_tolerances(
         if nominal is None:
             raise InputError("has no one value in the file to spread about", key=key)
         kind = (spread.distribution or settings.distribution).value
-        unsigned = one.sign != "any"
-        tolerances[one.name] = _tolerance(nominal, spread, kind, key, unsigned)
+        tolerances[one.name] = _tolerance(nominal, spread, kind, key, one.sign != "any")
         parameters[one.name] = one
-    function = MachineThreshold(
-        machine, parameters, model, speed, _search_speeds(np.array(operating.speeds), speed)
-    )
-    mapper = _mapper(executor, workers, progress)
+    speeds = _search_speeds(np.array(operating.speeds), speed)
     rotor = machine.rotor_with_unbalance()
-    return _studied(
-        function, tolerances, settings.samples, settings.seed, mapper, model, None, rotor, speed
-    )
-
-
-def _studied(
-    function: Callable[[dict[str, float]], Mapping[str, float | None]],
-    tolerances: Mapping[str, Tolerance], count: int, seed: int, mapper: Callable, model: str,
-    radial_clearance: float | None, rotor: Rotor, speed: float,
-) -> ToleranceStudy:  # fmt: skip
-    """Propagate, and say what it means."""
-    try:
-        nominal = function({name: t.nominal for name, t in tolerances.items()})
-    except SampleError as error:
-        raise InputError(f"without any deviation {error}", key="tolerances") from error
-    samples = propagate(function, tolerances, count, seed=seed, mapper=mapper)
-    if len(samples.failures) == len(next(iter(samples.inputs.values()))):
-        raise InputError(f"no sample could be solved: {samples.failures[0][1]}", key="tolerances")
-    p, error = samples.probability_above("growth_rate", 0.0)
-    return ToleranceStudy(
-        thermal_model=model,
-        radial_clearance=radial_clearance,
-        rotor=rotor,
-        operating_speed=speed,
-        tolerances=tolerances,
-        nominal=nominal,
-        samples=samples,
-        probability_of_instability=p,
-        standard_error=error,
-        importance=samples.importance("growth_rate"),
-        share_of_variance=samples.first_order_index("growth_rate"),
-        explained_variance=samples.explained_variance("growth_rate"),
-    )
+    return _MachineThreshold(machine, parameters, model, rotor, speed, speeds), tolerances
 
 
 def _tolerances_of(case: Case, settings: ToleranceSettings) -> dict[str, Tolerance]:
@@ -455,8 +416,6 @@ def _mapper(
     executor: Executor | None, workers: int | None, progress: Callable[[int, int], None] | None
 ) -> Callable:
     """``map`` on the executor, or on this machine's processes, a few samples at a time."""
-    from .sweep import available_cores, map_on_processes
-
     if executor is not None:
         if workers is not None:
             raise InputError("not together with an executor", key="workers", value=workers)

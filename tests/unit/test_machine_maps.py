@@ -14,7 +14,7 @@ from rotorsim.machine.peaks import node_at
 from rotorsim.model.machine import MachineTolerances
 from rotorsim.study.machine import analyse_machine
 from rotorsim.study.machine_map import map_of_machine
-from rotorsim.study.tolerances import study_machine_tolerances
+from rotorsim.study.tolerances import study_tolerances
 
 RPM = np.pi / 30.0
 FILM = """
@@ -147,7 +147,7 @@ def test_the_border_over_destabilising_stiffness_is_the_stiffness_without_decrem
     assert low < 0.0 < high
     # A tolerance about that value makes the machine unstable in half of the cases.
     settings = MachineTolerances({"destabilising_stiffness": "20 %"}, speed=speed, samples=64)
-    study = study_machine_tolerances(on_springs(f"{limit} N/m"), settings, workers=1)
+    study = study_tolerances(on_springs(f"{limit} N/m"), settings, workers=1)
     assert study.probability_of_instability == pytest.approx(0.5, abs=0.02)
     assert study.importance["destabilising_stiffness"] == pytest.approx(1.0, abs=1e-3)
 
