@@ -8,7 +8,7 @@ import shlex
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from rich.console import Console, RenderableType
 
     from ..bearing.operating_point import OperatingPoint
-    from ..study.sweep import Progress
 
 
 DONE = 0
@@ -63,6 +62,14 @@ class Output:
                 for part in parts:
                     self.people.print(part)
                     self.people.print()
+
+    def results(
+        self, document: dict[str, Any], parts: Callable[[], Iterable[RenderableType]]
+    ) -> None:
+        """Print the document, or for people `parts()` and the files that the document names."""
+        self.document(document)
+        if not (self.json or self.quiet):
+            self.show(*parts(), *map(str, document.get("files", ())))
 
     def document(self, value: Any) -> None:
         """Print results for programs: the one JSON document."""
@@ -229,39 +236,25 @@ _QUIET_SECONDS = 10.0
 
 
 @contextmanager
-def film_progress(output: Output, total: int) -> Iterator[Progress | None]:
-    """Give the callback for a sweep of `total` points."""
+def film_progress(output: Output, total: int, label: str = "film points") -> Iterator[Any]:
+    """Give the callback for a sweep of `total` points, or samples; None where nothing is said."""
     if output.quiet:
         yield None
     elif output.errors.is_terminal:
-        with _points_bar(output, total) as progress:
-            yield progress
+        from rich.progress import MofNCompleteColumn
+
+        from ..bearing.description import point_title
+
+        with _bar(output, label, total, MofNCompleteColumn()) as update:
+
+            def report(done: int, total: int, point: OperatingPoint | None = None) -> None:
+                last = "" if point is None else point_title(point)
+                update(completed=done, total=total, last=last)
+
+            yield report
+            update(last="")
     else:
-        yield _Lines(output)
-
-
-@contextmanager
-def _points_bar(output: Output, total: int) -> Iterator[Progress]:
-    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
-
-    from ..bearing.description import point_title
-
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeRemainingColumn(elapsed_when_finished=True),
-        TextColumn("{task.fields[last]}", style="dim"),
-    )
-    with Bar(*columns, console=output.errors, transient=False) as bar:
-        task = bar.add_task("film points", total=total, last="")
-
-        def report(done: int, total: int, point: OperatingPoint) -> None:
-            bar.update(task, completed=done, total=total, last=point_title(point))
-
-        yield report
-        bar.update(task, last="")
+        yield _Lines(output, label)
 
 
 @contextmanager
@@ -270,18 +263,23 @@ def progress_bar(output: Output, label: str, total: float) -> Iterator[Callable[
     if output.quiet or not output.errors.is_terminal:
         yield lambda _done: None
         return
-    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
-    from rich.progress import Progress as Bar
+    from rich.progress import TaskProgressColumn
+
+    with _bar(output, label, total, TaskProgressColumn()) as update:
+        yield lambda done: update(completed=done)
+
+
+@contextmanager
+def _bar(output: Output, label: str, total: float, count: Any) -> Iterator[Callable[..., None]]:
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
+        TextColumn("{task.description}"), BarColumn(), count,
         TimeRemainingColumn(elapsed_when_finished=True),
-    )
-    with Bar(*columns, console=output.errors) as bar:
-        task = bar.add_task(label, total=total)
-        yield lambda done: bar.update(task, completed=done)
+        TextColumn("{task.fields[last]}", style="dim"),
+    )  # fmt: skip
+    with Progress(*columns, console=output.errors) as bar:
+        yield functools.partial(bar.update, bar.add_task(label, total=total, last=""))
 
 
 @contextmanager
@@ -301,11 +299,11 @@ def late_progress(output: Output, label: str) -> Iterator[Callable[[int, int], N
 
 
 class _Lines:
-    def __init__(self, output: Output) -> None:
-        self.output = output
+    def __init__(self, output: Output, label: str) -> None:
+        self.output, self.label = output, label
         self.start = self.last = time.monotonic()
 
-    def __call__(self, done: int, total: int, _point: OperatingPoint) -> None:
+    def __call__(self, done: int, total: int, _point: OperatingPoint | None = None) -> None:
         now = time.monotonic()
         if now - self.last < _QUIET_SECONDS and done < total:
             return
@@ -314,4 +312,4 @@ class _Lines:
         # The first points wait for the workers and for compilation: no measure of the rest.
         known = 10 * done >= total and done < total
         left = f", about {spent / done * (total - done):.0f} s left" if known else ""
-        self.output.note(f"film points {done}/{total} after {spent:.0f} s{left}")
+        self.output.note(f"{self.label} {done}/{total} after {spent:.0f} s{left}")

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
 from pathlib import Path
@@ -30,18 +30,17 @@ from .options import (
     positive,
     table_path,
 )
-from .output import DONE, INCOMPLETE, Output
+from .output import DONE, INCOMPLETE, Output, film_progress
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-
     from ..bearing.table import CoefficientTable
+    from ..files.machine import MachineFile
     from ..files.scenario import Scenario
     from ..model import MeshSize
+    from ..model.machine import MachineTolerances
     from ..model.tolerances import ToleranceSettings
     from ..rotor import Rotor
     from ..study.planes import Plane
-    from ..study.tolerances import ToleranceStudy
 
 
 _MAP, _TOLERANCES = "Map over two inputs", "Tolerances"
@@ -234,11 +233,15 @@ def stability(
     """
     from .machine_commands import is_machine, machine_stability
 
+    work = _Work(output, source, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
+    own_rotor = {
+        "--mass": mass, "--rotor": rotor, "--shaft-stiffness": shaft_stiffness,
+        "--bearing-nodes": bearing_nodes, "--dofs-per-node": dofs_per_node,
+    }  # fmt: skip
+    mapped, spread = x is not None or y is not None, tolerances or tolerance or samples
+    axes = {"--x": (x, x_values), "--y": (y, y_values)}
     if is_machine(source):
-        for key, value in {
-            "--mass": mass, "--rotor": rotor, "--shaft-stiffness": shaft_stiffness,
-            "--bearing-nodes": bearing_nodes, "--dofs-per-node": dofs_per_node,
-        }.items():  # fmt: skip
+        for key, value in own_rotor.items():
             if value is not None:
                 raise InputError(f"the rotor is that of the machine file {source}", key=key)
         for key, value in {
@@ -249,12 +252,11 @@ def stability(
                 raise InputError(
                     'of a machine say whose: --hold "left.clearance=80 um"', key=key, value=value
                 )
-        work = _Work(output, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
         asked = [*(hold or ()), *([] if speed is None else [f"speed={speed}"])]
-        if x is not None or y is not None:
-            return _show_machine_map(work, source, {"x": (x, x_values), "y": (y, y_values)}, asked)
-        if tolerances or tolerance or samples:
-            return _show_machine_tolerances(work, source, asked, tolerance, samples)
+        if mapped:
+            return _show_plane(work, *_machine_plane(work, axes, asked))
+        if spread:
+            return _show_machine_tolerances(work, asked, tolerance, samples)
         if asked or x_values or y_values or mesh is not _Mesh.SCENARIO:
             raise InputError("goes with a map (--x, --y) or with --tolerances", key="--hold")
         return machine_stability(output, source, workers)
@@ -265,59 +267,65 @@ def stability(
         {_Axis.SPEED: speed, _Axis.LOAD: load, _Axis.CLEARANCE: clearance,
          _Axis.SUPPLY_TEMPERATURE: supply_temperature}
     )  # fmt: skip
-    rotor_texts = (given, shaft_stiffness, rotor, bearing_nodes, dofs_per_node)
-    if x is not None or y is not None:
-        axes = _axes({"--x": (x, x_values), "--y": (y, y_values)})
+    if mapped:
+        along = _axes(axes)
         if rotor is not None or shaft_stiffness is not None:
             raise InputError("maps are for a rigid rotor: give --mass", key="--rotor")
         held |= {} if given is None else {"mass": given}
-        work = _Work(output, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
-        return _show_map(work, source, axes, held)
+        return _show_plane(work, *_plane(work, along, held))
     if x_values or y_values:
         raise InputError("goes with --x and --y", key="--x-values" if x_values else "--y-values")
-    work = _Work(output, model, mesh, cells, folder, workers, scheduler, bearing, speeds)
-    if tolerances or tolerance or samples:
-        return _show_tolerances(work, source, held, rotor_texts, tolerance, samples)
+    rotor_texts = (given, shaft_stiffness, rotor, bearing_nodes, dofs_per_node)
+    if spread:
+        return _show_tolerances(work, held, rotor_texts, tolerance, samples)
     if held or mesh is not _Mesh.SCENARIO:
         raise InputError(
             "goes with a map (--x, --y) or with --tolerances",
             key=next((f"--{a.value}" for a, (n, *_) in _AXES.items() if n in held), "--mesh"),
         )
-    return _show_curves(work, source, rotor_texts, modes)
+    return _show_curves(work, rotor_texts, modes)
 
 
+@dataclass(frozen=True)
 class _Work:
-    """What the three analyses share."""
+    """What the analyses share."""
 
-    def __init__(
-        self, output: Output, model: str | None, mesh: _Mesh, cells: int | None,
-        folder: Path | None, workers: int | None, scheduler: str | None, bearing: str | None,
-        speeds: str | None,
-    ) -> None:  # fmt: skip
-        self.output, self.model, self.cells, self.folder = output, model, cells, folder
-        self.workers, self.scheduler, self.mesh = workers, scheduler, mesh
-        self.bearing, self.speeds = bearing, speeds
+    output: Output
+    source: Path
+    model: str | None
+    mesh: _Mesh
+    cells: int | None
+    folder: Path | None
+    workers: int | None
+    scheduler: str | None
+    bearing: str | None
+    speeds: str | None
 
-    def table(self, source: Path) -> CoefficientTable | None:
-        """Table at `source`; None where it is no table.
+    def table(self) -> CoefficientTable | None:
+        """Table at the source; None where it is no table.
 
         Raises InputError: It is neither a table nor a scenario, or not as the options say.
         """
         from ..files.formats import is_table
 
-        if is_table(source):
-            table = given_table(self.output, source, self.bearing)
+        if is_table(self.source):
+            table = given_table(self.output, self.source, self.bearing)
             if self.speeds is None:
                 return table
             return table.with_speeds(_read_values(self.speeds, _Axis.SPEED, "--speeds"))
-        kind = kind_of(source)
+        kind = kind_of(self.source)
         if kind not in (None, FileKind.SCENARIO):
             message = f"{sentence(kind)}; here a table or a scenario is needed"
-            raise InputError(message, source=source)
+            raise InputError(message, source=self.source)
         for key, text in (("--bearing", self.bearing), ("--speeds", self.speeds)):
             if text is not None:
                 raise InputError("goes with a table", key=key, value=text)
         return None
+
+    @property
+    def models(self) -> list[str] | None:
+        """The one thermal model that is asked for."""
+        return None if self.model is None else [self.model]
 
     @property
     def mesh_size(self) -> MeshSize | None:
@@ -332,11 +340,7 @@ class _Work:
 
         if self.folder is not None:
             document.setdefault("files", []).extend(save_figures(figures, self.folder))
-        self.output.document(document)
-        if not (self.output.json or self.output.quiet):
-            self.output.show(*parts())
-            if self.folder is not None:
-                self.output.show(*(str(path) for path in document["files"]))
+        self.output.results(document, parts)
 
 
 def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[float] | None]:
@@ -353,17 +357,7 @@ def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[flo
     return found
 
 
-def _show_map(
-    work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
-) -> int:
-    return _shown_plane(work, *_plane(work, source, axes, held))
-
-
-def _cells(work: _Work) -> int:
-    return 101 if work.cells is None else work.cells
-
-
-def _shown_plane(work: _Work, plane: Plane, title: str) -> int:
+def _show_plane(work: _Work, plane: Plane, title: str) -> int:
     from ..show.job import plane_figures
     from .stability_results import plane_document, plane_table
 
@@ -377,36 +371,59 @@ def _shown_plane(work: _Work, plane: Plane, title: str) -> int:
 
 
 def _plane(
-    work: _Work, source: Path, axes: dict[str, list[float] | None], held: dict[str, float]
+    work: _Work, axes: dict[str, list[float] | None], held: dict[str, float]
 ) -> tuple[Plane, str]:
-    """The map and its title."""
+    """Map of a scenario or a table, and its title."""
     from ..files.scenario import load_scenario
     from ..study.planes import plane_of_scenario, plane_of_table
-    from .output import film_progress
 
     x, y = axes
+    cells = 101 if work.cells is None else work.cells
     values = {name: found for name, found in axes.items() if found is not None}
-    table = work.table(source)
+    table = work.table()
     if table is not None:
         table = table if work.model is None else table.select(thermal_model=work.model)
-        own = _scenario_of(work.output, source, table)
+        own = _scenario_of(work, table)
         fixed = {**values, **{n: [v] for n, v in held.items() if n in ("speed", "mass")}}
         rotor = None if own is None else own.rotor
         if "mass" not in fixed and "mass" not in axes and rotor and rotor.rigid_mass:
             fixed["mass"] = [rotor.rigid_mass]
-        plane = plane_of_table(table, x, y, fixed, held, cells=_cells(work))
-        return plane, str(table.dataset.attrs.get("title", source.stem))
-    scenario = load_scenario(source)
+        plane = plane_of_table(table, x, y, fixed, held, cells=cells)
+        return plane, str(table.dataset.attrs.get("title", work.source.stem))
+    scenario = load_scenario(work.source)
+    # The first report corrects the number.
+    films = len(scenario.speeds) * len(scenario.thermal_models) * len(axes)
     with (
         cluster(work.scheduler, work.output) as executor,
-        film_progress(work.output, _film_count(scenario, axes)) as progress,
+        film_progress(work.output, films) as progress,
     ):
         plane = plane_of_scenario(
-            scenario, x, y, values, held,
-            thermal_models=None if work.model is None else [work.model], mesh=work.mesh_size,
-            cells=_cells(work), executor=executor, workers=work.workers, progress=progress,
+            scenario, x, y, values, held, thermal_models=work.models, mesh=work.mesh_size,
+            cells=cells, executor=executor, workers=work.workers, progress=progress,
         )  # fmt: skip
     return plane, scenario.title
+
+
+def _machine_plane(
+    work: _Work, axes: dict[str, tuple[str | None, str | None]], hold: list[str]
+) -> tuple[Plane, str]:
+    """Map of a machine, and its title."""
+    from ..files.machine import load_machine
+    from ..study.machine_map import map_of_machine
+
+    machine = load_machine(work.source)
+    for key, (name, _) in axes.items():
+        if name is None:
+            raise InputError("a map needs both --x and --y", key=key)
+    options: dict[str, Any] = {} if work.cells is None else {"cells": work.cells}
+    with film_progress(work.output, len(machine.operating.speeds)) as progress:
+        plane = map_of_machine(
+            machine, str(axes["--x"][0]), str(axes["--y"][0]),
+            {key.strip("-"): values for key, (_, values) in axes.items()},
+            _named_texts(hold, "--hold"), models=work.models, mesh=work.mesh_size,
+            workers=work.workers, progress=progress, **options,
+        )  # fmt: skip
+    return plane, machine.title
 
 
 def _named_texts(texts: Sequence[str] | None, key: str) -> dict[str, str]:
@@ -420,39 +437,14 @@ def _named_texts(texts: Sequence[str] | None, key: str) -> dict[str, str]:
     return found
 
 
-def _show_machine_map(
-    work: _Work, source: Path, texts: dict[str, tuple[str | None, str | None]], hold: list[str]
-) -> int:
-    from ..files.machine import load_machine
-    from ..study.machine_map import map_of_machine
-    from .output import film_progress
-
-    machine = load_machine(source)
-    for key, (name, _) in texts.items():
-        if name is None:
-            raise InputError("a map needs both --x and --y", key=f"--{key}")
-    options: dict[str, Any] = {} if work.cells is None else {"cells": work.cells}
-    with film_progress(work.output, len(machine.operating.speeds)) as progress:
-        plane = map_of_machine(
-            machine, str(texts["x"][0]), str(texts["y"][0]),
-            {key: values for key, (_, values) in texts.items()}, _named_texts(hold, "--hold"),
-            models=None if work.model is None else [work.model], mesh=work.mesh_size,
-            workers=work.workers, progress=progress, **options,
-        )  # fmt: skip
-    return _shown_plane(work, plane, machine.title)
-
-
 def _show_machine_tolerances(
-    work: _Work, source: Path, hold: list[str], texts: list[str] | None, samples: int | None
+    work: _Work, hold: list[str], texts: list[str] | None, samples: int | None
 ) -> int:
-    from dataclasses import replace
-
     from ..files.machine import load_machine
     from ..files.parameters import held_values
     from ..model.machine import MachineTolerances
-    from ..study.tolerances import study_tolerances
 
-    machine = load_machine(source)
+    machine = load_machine(work.source)
     held = held_values(machine, _named_texts(hold, "--hold"), "--hold")
     speeds = [value for one, value in held.items() if one.kind == "speed"]
     if len(held) > len(speeds):
@@ -466,66 +458,46 @@ def _show_machine_tolerances(
         )
     settings = replace(own or MachineTolerances(spread), spread=spread)
     settings = replace(settings, samples=samples or settings.samples)
-    with (
-        cluster(work.scheduler, work.output) as executor,
-        _sample_progress(work.output) as progress,
-    ):
-        study = study_tolerances(
-            machine, settings, operating_speed=speeds[0] if speeds else None,
-            thermal_model=work.model, mesh=work.mesh_size, executor=executor,
-            workers=None if executor is not None else work.workers, progress=progress,
-        )  # fmt: skip
-    return _shown_study(work, study, machine.title)
-
-
-def _film_count(scenario: Scenario, axes: dict[str, list[float] | None]) -> int:
-    """Some number for the progress bar before the first report corrects it."""
-    return len(scenario.speeds) * len(scenario.thermal_models) * len(axes)
+    return _show_study(work, machine, settings, operating_speed=speeds[0] if speeds else None)
 
 
 def _show_tolerances(
-    work: _Work,
-    source: Path,
-    held: dict[str, float],
-    rotor_texts: tuple,
-    texts: list[str] | None,
+    work: _Work, held: dict[str, float], rotor_texts: tuple, texts: list[str] | None,
     samples: int | None,
-) -> int:
-    from ..study.tolerances import study_tolerances
-
-    scenario, _ = _source(work, source)
+) -> int:  # fmt: skip
+    scenario, _ = _source(work)
     if scenario is None:
         raise InputError(
             "films are solved, and this table does not say how: give the scenario in its place",
-            key="--tolerances", source=source,
+            key="--tolerances", source=work.source,
         )  # fmt: skip
     extra = [name for name in held if name not in ("speed", "radial_clearance")]
     if extra:
         raise InputError("goes with a map; set it in the scenario", key=extra[0])
-    with (
-        cluster(work.scheduler, work.output) as executor,
-        _sample_progress(work.output) as progress,
-    ):
-        study = study_tolerances(
-            scenario,
-            _wanted_tolerances(scenario, texts, samples),
-            rotor=_wanted_rotor(scenario, *rotor_texts),
-            operating_speed=held.get("speed"),
-            radial_clearance=held.get("radial_clearance"),
-            thermal_model=work.model,
-            mesh=work.mesh_size,
-            executor=executor,
-            workers=None if executor is not None else work.workers,
-            progress=progress,
-        )
-    return _shown_study(work, study, scenario.title)
+    return _show_study(
+        work, scenario, _wanted_tolerances(scenario, texts, samples),
+        rotor=_wanted_rotor(scenario, *rotor_texts), operating_speed=held.get("speed"),
+        radial_clearance=held.get("radial_clearance"),
+    )  # fmt: skip
 
 
-def _shown_study(work: _Work, study: ToleranceStudy, title: str) -> int:
+def _show_study(
+    work: _Work, source: Scenario | MachineFile, settings: ToleranceSettings | MachineTolerances,
+    **options: Any,
+) -> int:  # fmt: skip
     from ..show.job import tolerance_figures
+    from ..study.tolerances import study_tolerances
     from .stability_results import study_document, study_tables
 
-    figures = tolerance_figures(study, title)
+    with (
+        cluster(work.scheduler, work.output) as executor,
+        film_progress(work.output, settings.samples, "samples") as progress,
+    ):
+        study = study_tolerances(
+            source, settings, thermal_model=work.model, mesh=work.mesh_size, executor=executor,
+            workers=None if executor is not None else work.workers, progress=progress, **options,
+        )  # fmt: skip
+    figures = tolerance_figures(study, source.title)
     work.finish(study_document(study), figures, lambda: study_tables(study))
     failed = study.samples.failures
     if failed:
@@ -534,26 +506,7 @@ def _shown_study(work: _Work, study: ToleranceStudy, title: str) -> int:
     return INCOMPLETE if failed else DONE
 
 
-@contextmanager
-def _sample_progress(output: Output) -> Iterator[Callable[[int, int], None] | None]:
-    """Say from time to time how many samples are done."""
-    import time
-
-    if output.quiet:
-        yield None
-        return
-    last = time.monotonic()
-
-    def report(done: int, total: int) -> None:
-        nonlocal last
-        if time.monotonic() - last > 5.0:
-            last = time.monotonic()
-            output.note(f"samples {done}/{total}")
-
-    yield report
-
-
-def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> int:
+def _show_curves(work: _Work, rotor_texts: tuple, modes: int) -> int:
     from ..bearing.doubts import doubts
     from ..show.job import campbell_figures
     from ..study.stability import campbell_curves, stability_curves
@@ -561,10 +514,10 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
     from .tables import curve_table, summary_table
 
     output = work.output
-    scenario, stored = _source(work, source)
+    scenario, stored = _source(work)
     # Before films are solved: what is wrong with the rotor is said at once.
     rotor = _wanted_rotor(scenario, *rotor_texts)
-    table = _solved(work, source, scenario) if stored is None else stored
+    table = _solved(work, scenario) if stored is None else stored
     table = table if work.model is None else table.select(thermal_model=work.model)
     curves = stability_curves(table, rotor)
     found = campbell_curves(table, rotor, modes) if rotor is not None else [None] * len(curves)
@@ -586,14 +539,11 @@ def _show_curves(work: _Work, source: Path, rotor_texts: tuple, modes: int) -> i
                 tables += [modes_table(curve, one), branches_table(curve, one)]
         return [*tables, threshold_table(curves, shown) if shown else summary_table(curves)]
 
-    work.finish(document, campbell_figures(shown, _title(scenario, table)), parts)
+    title = str(table.dataset.attrs.get("title", "")) if scenario is None else scenario.title
+    work.finish(document, campbell_figures(shown, title), parts)
     for text in document["doubts"]:
         output.warn(text)
     return _report_failed(output, int((~table.converged).sum()), table.converged.size)
-
-
-def _title(scenario: Scenario | None, table: CoefficientTable) -> str:
-    return scenario.title if scenario is not None else str(table.dataset.attrs.get("title", ""))
 
 
 def _report_failed(output: Output, bad: int, total: int) -> int:
@@ -602,26 +552,24 @@ def _report_failed(output: Output, bad: int, total: int) -> int:
     return INCOMPLETE if bad else DONE
 
 
-def _source(work: _Work, source: Path) -> tuple[Scenario | None, CoefficientTable | None]:
-    """Scenario at `source`, or of the table there where it says; the table, if it is one."""
+def _source(work: _Work) -> tuple[Scenario | None, CoefficientTable | None]:
+    """The scenario, or that of the table where it says; the table, if it is one."""
     from ..files.scenario import load_scenario
 
-    table = work.table(source)
-    if table is None:
-        return load_scenario(source), None
-    return _scenario_of(work.output, source, table), table
+    table = work.table()
+    return (load_scenario(work.source) if table is None else _scenario_of(work, table)), table
 
 
-def _solved(work: _Work, source: Path, scenario: Scenario | None) -> CoefficientTable:
+def _solved(work: _Work, scenario: Scenario | None) -> CoefficientTable:
     """Table of a scenario, solved."""
     assert scenario is not None
-    path = table_path(source, Path())
+    path = table_path(work.source, Path())
     _, table = computed_table(work.output, scenario, path, work.workers, work.scheduler)
     work.output.note(f"the table is in {path}")
     return table
 
 
-def _scenario_of(output: Output, source: Path, table: CoefficientTable) -> Scenario | None:
+def _scenario_of(work: _Work, table: CoefficientTable) -> Scenario | None:
     """Scenario that a table was made from, where it says."""
     from ..files.scenario import Scenario
 
@@ -629,9 +577,9 @@ def _scenario_of(output: Output, source: Path, table: CoefficientTable) -> Scena
     if not text:
         return None
     try:
-        return Scenario.from_text(str(text), source=source)
+        return Scenario.from_text(str(text), source=work.source)
     except InputError as error:
-        output.note(f"the table's scenario cannot be read here, so give --mass: {error}")
+        work.output.note(f"the table's scenario cannot be read here, so give --mass: {error}")
         return None
 
 
@@ -679,13 +627,9 @@ def _held_values(texts: Mapping[_Axis, str | None]) -> dict[str, float]:
 
 
 def _wanted_rotor(
-    scenario: Scenario | None,
-    mass: float | None,
-    shaft_stiffness: str | None,
-    file: Path | None,
-    nodes: str | None,
-    dofs: int | None,
-) -> Rotor | None:
+    scenario: Scenario | None, mass: float | None, shaft_stiffness: str | None,
+    file: Path | None, nodes: str | None, dofs: int | None,
+) -> Rotor | None:  # fmt: skip
     """Rotor of the options, else the scenario's; None without either."""
     from ..files.rotors import load_rotor
     from ..rotor import Rotor
@@ -736,8 +680,6 @@ def _wanted_tolerances(
     scenario: Scenario, texts: Sequence[str] | None, samples: int | None
 ) -> ToleranceSettings:
     """The scenario's tolerances with those of the options."""
-    from dataclasses import replace
-
     from ..model.tolerances import KINDS, ToleranceSettings, parse_spread
 
     found: dict[str, Any] = {}
@@ -746,11 +688,8 @@ def _wanted_tolerances(
         name = name.replace("-", "_")
         name = _SHORT.get(name, name)
         if not sign or name not in KINDS:
-            raise InputError(
-                f"must be NAME=SPREAD, NAME one of {', '.join(KINDS)}",
-                key="--tolerance",
-                value=text,
-            )
+            known = f"must be NAME=SPREAD, NAME one of {', '.join(KINDS)}"
+            raise InputError(known, key="--tolerance", value=text)
         try:
             found[name] = parse_spread(value, name)
         except InputError as error:
