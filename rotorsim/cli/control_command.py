@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import InputError
+from ..rows import RPM, number
 from .options import (
     ClearanceOption,
     FolderOption,
@@ -26,8 +27,6 @@ from .options import (
 from .output import DONE, INCOMPLETE, Output
 
 if TYPE_CHECKING:
-    from ..files.scenario import Scenario
-    from ..model import Case
     from ..study.control import ControlStudy
     from ..study.machine_control import MachineControlStudy
 
@@ -124,19 +123,22 @@ def control(
     settings = ActuatorSettings(Design(design.value), math.inf if limit is None else limit)
     start = positive(disturbance, "length", "--disturbance", "2 um")
     at = positive(speed, "speed", "--speed", "15000 rpm") or float(loaded.speeds[-1])
-    study = study_control(
-        _case(loaded, clearance, model), at, _mass(loaded, mass), settings,
-        disturbance=start, revolutions=revolutions,
-    )  # fmt: skip
+    own = None if loaded.rotor is None else loaded.rotor.rigid_mass
+    carried = positive(mass, "mass", "--mass", "1200 kg") or own
+    if carried is None:
+        raise InputError('is missing: a rigid rotor, e.g. "900 kg"', key="--mass")
+    names = [str(name) for name in loaded.thermal_models]
+    case = loaded.case(
+        None if clearance is None else wanted_clearance(loaded, clearance),
+        model or ("thd" if "thd" in names else names[0]),
+    )
+    study = study_control(case, at, carried, settings, disturbance=start, revolutions=revolutions)
     document = _study_document(study)
     if folder is not None:
         from ..show.job import control_figures, save_figures
 
         document["files"] = save_figures(control_figures(study, loaded.title), folder)
-    output.document(document)
-    if not (output.json or output.quiet):
-        output.show(*_study_tables(study))
-        output.show(*map(str, document.get("files", [])))
+    output.results(document, lambda: _study_tables(study))
     if study.holds:
         return DONE
     run = document["controlled"]
@@ -149,12 +151,9 @@ def _machine_control(
     folder: Path | None, workers: int | None,
 ) -> int:  # fmt: skip
     """Control of a machine: design, run on the whole linear machine, figures."""
-    import dataclasses
-
     from ..files.machine import load_machine
     from ..model.machine import MachineControl
     from ..model.orbit import Design
-    from ..rows import RPM
     from ..study.machine_control import study_machine_control
     from .machine_commands import analysed
 
@@ -182,10 +181,7 @@ def _machine_control(
         from ..show.job import machine_control_figures, save_figures
 
         document["files"] = save_figures(machine_control_figures(study, loaded.title), folder)
-    output.document(document)
-    if not (output.json or output.quiet):
-        output.show(*_machine_tables(study))
-        output.show(*map(str, document.get("files", [])))
+    output.results(document, lambda: _machine_tables(study))
     if not result.converged:
         output.warn("a film or the static equilibrium did not converge")
     elif study.holds:
@@ -244,7 +240,6 @@ def _machine_document(study: MachineControlStudy, model: str) -> dict[str, Any]:
 
 def _machine_tables(study: MachineControlStudy) -> list[Any]:
     """Control of a machine for people."""
-    from ..rows import RPM, number
     from .tables import grid
 
     said = _machine_document(study, "")
@@ -257,7 +252,7 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
         lengths = (row["largest_displacement"], row["final_displacement"])
         table.add_row(
             name, number(row["growth_rate"]) if row["growth_rate"] else "undamped",
-            number(abs(values[0].imag) / 6.283185307179586),
+            number(abs(values[0].imag) / (2.0 * math.pi)),
             *(number(None if one is None else one * 1e6) for one in lengths),
         )  # fmt: skip
     reduction = study.reduction
@@ -276,21 +271,6 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
         of = ", saturates" if study.saturates else ""
         facts.add_row("largest force", f"{number(study.largest_force)} N{of}")
     return [table, facts]
-
-
-def _mass(scenario: Scenario, text: str | None) -> float:
-    own = None if scenario.rotor is None else scenario.rotor.rigid_mass
-    mass = positive(text, "mass", "--mass", "1200 kg") or own
-    if mass is None:
-        raise InputError('is missing: a rigid rotor, e.g. "900 kg"', key="--mass")
-    return mass
-
-
-def _case(scenario: Scenario, clearance: str | None, model: str | None) -> Case:
-    names = [str(name) for name in scenario.thermal_models]
-    chosen = model or ("thd" if "thd" in names else names[0])
-    wanted = None if clearance is None else wanted_clearance(scenario, clearance)
-    return scenario.case(wanted, chosen)
 
 
 def _study_document(study: ControlStudy) -> dict[str, Any]:
@@ -316,7 +296,7 @@ def _study_document(study: ControlStudy) -> dict[str, Any]:
         "gain": study.feedback.gain,
         "max_force": study.feedback.max_force,
         "largest_force": study.largest_force,
-        "saturates": _saturates(study),
+        "saturates": study.saturates,
         "margins": {
             axis: dataclasses.asdict(one) for axis, one in zip("xy", study.margins, strict=True)
         },
@@ -329,7 +309,6 @@ def _study_document(study: ControlStudy) -> dict[str, Any]:
 
 def _study_tables(study: ControlStudy) -> list[Any]:
     """A control study for people."""
-    from ..rows import RPM, number
     from .tables import grid
 
     said = _study_document(study)
@@ -349,26 +328,18 @@ def _study_tables(study: ControlStudy) -> list[Any]:
     for axis, one in zip("xy", study.margins, strict=True):
         margins.add_row(
             axis, *(_factor(v) for v in (one.gain_increase, one.gain_reduction)),
-            _factor(one.phase_margin * 57.29577951308232), number(one.modulus_margin, 3),
+            _factor(math.degrees(one.phase_margin)), number(one.modulus_margin, 3),
         )  # fmt: skip
     lines = [] if study.largest_force is None else [_force_words(study)]
     return [table, gains, margins, *lines, *([study.note] if study.note else [])]
 
 
-def _saturates(study: ControlStudy) -> bool:
-    """Return whether the actuator reached its limit in the run in time."""
-    force = study.largest_force
-    return force is not None and force >= (1.0 - 1e-9) * study.feedback.max_force
-
-
 def _force_words(study: ControlStudy) -> str:
     """The actuator's force in the run in time, and what it had to do."""
-    from ..rows import number
-
     limit = study.feedback.max_force
     of = "unlimited" if limit == float("inf") else f"of {number(limit)} N"
     said = f"largest actuator force {number(study.largest_force)} N, {of}"
-    if _saturates(study):
+    if study.saturates:
         said = f"the actuator saturates at {number(limit)} N"
     start = f"from {number(study.disturbance * 1e6)} µm beside rest"
     return f"{said}; {start}, load {number(study.load)} N"

@@ -30,7 +30,7 @@ from .options import (
     wanted_cases,
     wanted_speeds,
 )
-from .output import DONE, INCOMPLETE, Output
+from .output import DONE, INCOMPLETE, Output, film_progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -116,7 +116,6 @@ def solve(
     from ..bearing.operating_point import point_to_dict
     from ..files.scenario import load_scenario
     from ..study.sweep import sweep_points
-    from .output import film_progress
 
     loaded = load_scenario(scenario)
     loaded = asked_scenario(loaded, clearance, load, supply_temperature)
@@ -180,7 +179,6 @@ def computed_table(
     resumed from, and so does an older table without such points.
     """
     from ..study.sweep import Journal, as_table, sweep_points
-    from .output import film_progress
 
     check_workers(workers)
     check_file(path, ".nc", scenario.source)

@@ -32,6 +32,10 @@ def check_machine(output: Output, path: Path) -> int:
     rotor, beam = loaded.rotor_with_unbalance(), loaded.rotor.beam
     speeds = loaded.operating.speeds
     names = loaded.support_names
+    kinds = [
+        [name, shown(entry.at * 1e3, "mm"), _kind(entry)]
+        for name, entry in zip(names, loaded.support, strict=True)
+    ]
     document = {
         "machine": path,
         "title": loaded.title,
@@ -46,23 +50,17 @@ def check_machine(output: Output, path: Path) -> int:
         ],
         "speeds": list(speeds),
     }
-    output.document(document)
-    if not (output.json or output.quiet):
-        table = grid(loaded.title, "", "")
-        table.add_row("shaft", f"{with_unit(beam.length * 1e3, 'mm')}, {len(rotor.nodes)} nodes")
-        moved = f"twice as many elements move the lowest frequencies by {number(100 * change, 2)} %"
-        table.add_row("mesh, supports rigid", moved)
-        weight = rotor.total_mass * STANDARD_GRAVITY / 1e3
-        mass = f"{with_unit(rotor.total_mass, 'kg')} ({with_unit(weight, 'kN')})"
-        table.add_row("mass of the rotor", mass)
-        table.add_row("discs and added masses", str(len(beam.discs)))
-        table.add_row(
-            "speeds", f"{len(speeds)}, {speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm"
-        )
-        supports = grid("Supports", *heads("name", "at mm", "kind"))
-        for name, entry in zip(names, loaded.support, strict=True):
-            supports.add_row(name, shown(entry.at * 1e3, "mm"), _kind(entry))
-        output.show(table, supports)
+    weight = rotor.total_mass * STANDARD_GRAVITY / 1e3
+    rows = {
+        "shaft": f"{with_unit(beam.length * 1e3, 'mm')}, {len(rotor.nodes)} nodes",
+        "mesh, supports rigid":
+            f"twice as many elements move the lowest frequencies by {number(100 * change, 2)} %",
+        "mass of the rotor": f"{with_unit(rotor.total_mass, 'kg')} ({with_unit(weight, 'kN')})",
+        "discs and added masses": str(len(beam.discs)),
+        "speeds": f"{len(speeds)}, {speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm",
+    }  # fmt: skip
+    supports = grid("Supports", *heads("name", "at mm", "kind"), rows=kinds)
+    output.results(document, lambda: [grid(loaded.title, "", "", rows=rows.items()), supports])
     _say_free(output, loaded)
     return DONE
 
@@ -89,9 +87,7 @@ def machine_stability(output: Output, path: Path, workers: int | None) -> int:
     from ..study.machine import stability_document
 
     results = _analysed(output, path, workers)
-    output.document(stability_document(results))
-    if not (output.json or output.quiet):
-        output.show(*_stability_tables(results))
+    output.results(stability_document(results), lambda: _stability_tables(results))
     return _closing(output, results)
 
 
@@ -205,17 +201,15 @@ def machine_limit_cycles(output: Output, path: Path) -> int:
     branch = limit_cycles(loaded)
     folder = Path("figures") / path.stem
     files = save_figures([("limit_cycles", branch_plot(branch, loaded.title))], folder)
-    output.document(branch_document(branch) | {"figures": files})
-    if not (output.json or output.quiet):
-        table = grid("Limit cycles", "rpm", "f/rev", *heads(*(f"{n} µm" for n in branch.names)), "")
-        for i in range(0, branch.speed.size, max(1, branch.speed.size // 12)):
-            table.add_row(
-                f"{branch.speed[i] * RPM:.0f}",
-                number(float(branch.frequency[i] / branch.speed[i]), 3),
-                *(shown(float(size) * 1e6, "µm") for size in branch.amplitude[i]),
-                "stable" if branch.stable[i] else "unstable",
-            )
-        output.show(table, *(str(file) for file in files))
+    rows = [
+        [f"{branch.speed[i] * RPM:.0f}", number(float(branch.frequency[i] / branch.speed[i]), 3),
+         *(shown(float(size) * 1e6, "µm") for size in branch.amplitude[i]),
+         "stable" if branch.stable[i] else "unstable"]
+        for i in range(0, branch.speed.size, max(1, branch.speed.size // 12))
+    ]  # fmt: skip
+    names = heads(*(f"{name} µm" for name in branch.names))
+    table = grid("Limit cycles", "rpm", "f/rev", *names, "", rows=rows)
+    output.results(branch_document(branch) | {"figures": files}, lambda: [table, *map(str, files)])
     if branch.threshold is not None:
         kind = "supercritical" if branch.supercritical else "subcritical"
         output.note(f"{kind} from {branch.threshold * RPM:.0f} rpm; ends with {branch.message}")
@@ -226,18 +220,19 @@ def _say_motion(output: Output, motion: Motion, files: list[Path]) -> int:
     from ..study.machine_motion import motion_document
 
     document = motion_document(motion)
-    output.document(document | {"recording": files[0], "figures": files[1:]})
-    if not (output.json or output.quiet):
-        head = heads("station", "max e/c", "amplitude µm", "whirl ratio", "outcome")
-        table = grid(f"Motion: {document['note']}", *head)
-        for row in document["stations"]:
-            ratio = row["max_eccentricity_ratio"] if row["film"] else None
-            table.add_row(
-                row["station"], number(ratio, 3), shown(row["amplitude"] * 1e6, "µm"),
-                number(row["whirl_frequency_ratio"], 3), row["status"].replace("_", " "),
-            )  # fmt: skip
-        output.show(table, *(str(file) for file in files[1:]))
-        output.show(f"recorded in {files[0]}; look at it: rotorsim view {as_typed(files[0])}")
+    rows = [
+        [row["station"], number(row["max_eccentricity_ratio"] if row["film"] else None, 3),
+         shown(row["amplitude"] * 1e6, "µm"), number(row["whirl_frequency_ratio"], 3),
+         row["status"].replace("_", " ")]
+        for row in document["stations"]
+    ]  # fmt: skip
+    head = heads("station", "max e/c", "amplitude µm", "whirl ratio", "outcome")
+    table = grid(f"Motion: {document['note']}", *head, rows=rows)
+    said = f"recorded in {files[0]}; look at it: rotorsim view {as_typed(files[0])}"
+    output.results(
+        document | {"recording": files[0], "figures": files[1:]},
+        lambda: [table, *map(str, files[1:]), said],
+    )
     output.note(
         f"{document['unknowns']} unknowns; eigenvalues changed by the reduction: "
         f"{document['reduction_error']:.1e}"
@@ -264,11 +259,9 @@ def report_machine(output: Output, path: Path, page: Path, workers: int | None) 
 
 
 def _grid(rows: tables.Rows) -> Table:
-    table = grid(rows.title, *rows.head)
+    table = grid(rows.title, *rows.head, rows=rows.rows)
     if rows.head[0] == "check":
         table.columns[0].no_wrap = False
-    for row in rows.rows:
-        table.add_row(*row)
     return table
 
 

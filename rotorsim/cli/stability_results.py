@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..rows import QUANTITIES, RPM, number
+from ..study.stability import verdict_word
 from .tables import grid
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
     from rich.table import Table
 
+    from ..machine.branches import Modes
     from ..study.planes import Plane
     from ..study.stability import Campbell, StabilityCurve
     from ..study.tolerances import ToleranceStudy
@@ -42,47 +44,36 @@ def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
 
 def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """The least stable oscillating mode over speed."""
-    head = ("rpm", "mode", "Hz", "f/rev", "damping ratio", "log decrement", "growth 1/s", "whirl")
-    table = grid(f"Least stable mode: {curve.title}", *head)
-    found = modes.branches
-    whirl = found.whirl
-    if not found.eigenvalues.shape[1]:
-        return table
-    least = found.least_stable
-    for i, speed in enumerate(found.parameter):
-        k = int(least[i])
-        frequency = float(found.damped_frequency[i, k])
-        table.add_row(
-            f"{speed * RPM:.0f}",
-            str(k + 1),
-            number(frequency / (2.0 * math.pi)),
-            number(frequency / float(speed), 3),
-            number(float(found.damping_ratio[i, k]), 3),
-            number(float(found.logarithmic_decrement[i, k]), 3),
-            number(float(found.growth_rate[i, k])),
-            str(whirl[i, k]),
-        )
-    return table
+    found, head = modes.branches, ["rpm", *_MODE_HEADS]
+    head.insert(-1, "growth 1/s")
+    rows = []
+    for i, speed in enumerate(found.parameter if found.eigenvalues.shape[1] else ()):
+        cells = _mode_cells(found, i, k := int(found.least_stable[i]))
+        cells.insert(-1, number(float(found.growth_rate[i, k])))
+        rows.append([f"{speed * RPM:.0f}", *cells])
+    return grid(f"Least stable mode: {curve.title}", *head, rows=rows)
+
+
+_MODE_HEADS = ("mode", "Hz", "f/rev", "damping ratio", "log decrement", "whirl")
+
+
+def _mode_cells(found: Modes, i: int, k: int) -> list[str]:
+    """Branch k at speed i."""
+    frequency = float(found.damped_frequency[i, k])
+    return [
+        str(k + 1), number(frequency / (2.0 * math.pi)),
+        number(frequency / float(found.parameter[i]), 3),
+        number(float(found.damping_ratio[i, k]), 3),
+        number(float(found.logarithmic_decrement[i, k]), 3), str(found.whirl[i, k]),
+    ]  # fmt: skip
 
 
 def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
     """Every branch at the highest speed."""
     found = modes.branches
-    whirl = found.whirl
-    top = f"{found.parameter[-1] * RPM:.0f} rpm"
-    head = ("mode", "Hz", "f/rev", "damping ratio", "log decrement", "whirl")
-    table = grid(f"Modes at {top}: {curve.title}", *head)
-    for k in range(found.eigenvalues.shape[1]):
-        frequency = float(found.damped_frequency[-1, k])
-        table.add_row(
-            str(k + 1),
-            number(frequency / (2.0 * math.pi)),
-            number(frequency / float(found.parameter[-1]), 3),
-            number(float(found.damping_ratio[-1, k]), 3),
-            number(float(found.logarithmic_decrement[-1, k]), 3),
-            str(whirl[-1, k]),
-        )
-    return table
+    rows = [_mode_cells(found, -1, k) for k in range(found.eigenvalues.shape[1])]
+    title = f"Modes at {found.parameter[-1] * RPM:.0f} rpm: {curve.title}"
+    return grid(title, *_MODE_HEADS, rows=rows)
 
 
 def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell]) -> Table:
@@ -90,10 +81,8 @@ def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell])
     table = grid("Threshold speeds", "bearing", "rpm", "whirl Hz", "whirl ratio", "above it")
     for curve, found in zip(curves, modes, strict=True):
         if not found.thresholds:
-            known = found.growth[np.isfinite(found.growth)]
-            verdict = "stable throughout" if known.size and known.max() < 0.0 else "-"
-            verdict = "unstable throughout" if known.size and known.min() > 0.0 else verdict
-            verdict = "undamped throughout" if known.size and not known.any() else verdict
+            words = {verdict_word(rate) for rate in found.growth[np.isfinite(found.growth)]}
+            verdict = f"{words.pop()} throughout" if len(words) == 1 else "-"
             table.add_row(curve.title, "none", "", "", verdict)
         for one in found.thresholds:
             table.add_row(
@@ -274,14 +263,11 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
     ]
     failed = len(study.samples.failures)
     lines += [f"left out everywhere: {failed} samples whose film did not converge"] * bool(failed)
-    return [table, "\n".join(lines), inputs, _share_note(study.explained_variance)]
-
-
-def _share_note(explained: float) -> str:
-    """Return what the shares of variance are."""
-    if not math.isfinite(explained):
-        return "share of variance: too few samples to tell, or nothing varies"
-    return (
-        "share of variance: of this input alone (first-order Sobol' index), by a regression that\n"
-        f"explains {100.0 * explained:.1f} % (adjusted R2); the shares need not add up to 100 %"
-    )
+    shares = "share of variance: too few samples to tell, or nothing varies"
+    if math.isfinite(study.explained_variance):
+        shares = (
+            "share of variance: of this input alone (first-order Sobol' index), by a regression "
+            f"that\nexplains {100.0 * study.explained_variance:.1f} % (adjusted R2); the shares "
+            "need not add up to 100 %"
+        )
+    return [table, "\n".join(lines), inputs, shares]

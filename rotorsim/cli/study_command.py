@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from ..rows import QUANTITIES, Quantity, number
 from .options import (
@@ -16,7 +16,7 @@ from .options import (
     cluster,
     option,
 )
-from .output import DONE, INCOMPLETE, Output
+from .output import DONE, INCOMPLETE, Output, film_progress
 
 _INPUTS = {
     "bearing.radial_clearance": QUANTITIES["radial_clearance"],
@@ -67,15 +67,10 @@ def study(
     if samples is not None and not 1 <= samples <= MAX_SAMPLES:
         raise InputError(f"must lie from 1 to {MAX_SAMPLES}", key="--samples", value=samples)
     output.kept.append(f"finished designs are in {path}; the same command goes on from there")
-    shown = 0.0
-
-    def progress(done: int, total: int) -> None:
-        nonlocal shown
-        if done == total or done >= shown:
-            shown = done + 0.1 * total
-            output.note(f"designs {done}/{total}")
-
-    with cluster(scheduler, output) as executor:
+    with (
+        cluster(scheduler, output) as executor,
+        film_progress(output, samples or 0, "designs") as progress,
+    ):
         found = run_study(
             loaded, path, samples=samples, thermal_model=model, executor=executor,
             workers=workers, progress=progress,
@@ -83,8 +78,7 @@ def study(
     files: list[Path] = []
     if len(found.converged):
         files = save_figures([("study", study_plot(found))], Path("figures") / path.stem)
-    output.document(described(found) | {"files": files})
-    _show(output, found, [path, *files])
+    output.results(described(found) | {"files": files}, lambda: [*_parts(found), str(path)])
     bad = len(found.designs) - len(found.converged)
     if bad:
         words = found.designs["status"].value_counts().drop("converged", errors="ignore")
@@ -93,12 +87,10 @@ def study(
     return INCOMPLETE if bad else DONE
 
 
-def _show(output: Output, found: Study, files: list[Path]) -> None:
+def _parts(found: Study) -> list[Any]:
     """Designs that no other beats, and what the study cost."""
     from .tables import grid
 
-    if output.json or output.quiet:
-        return
     inputs = [
         _INPUTS.get(one.name) or Quantity("", one.name.rsplit(".", 1)[-1], one.unit)
         for one in found.variables
@@ -128,4 +120,4 @@ def _show(output: Output, found: Study, files: list[Path]) -> None:
         words.append(
             f"{found.solved} solved now in {number(found.seconds)} s: {number(each)} ms a point"
         )
-    output.show(table, "; ".join(words), *(str(path) for path in files))
+    return [table, "; ".join(words)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,10 +27,7 @@ from ..study.stability import late_whirl, verdict_word
 from .output import as_typed
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-
     from rich.console import RenderableType
-    from rich.table import Table
 
     from ..bearing.operating_point import OperatingPoint
     from ..files.scenario import Scenario
@@ -51,8 +48,8 @@ def _head(symbol: str, unit: str) -> str:
     return f"{symbol} {shown_unit(unit)[0]}"
 
 
-def grid(title: str, *columns: str) -> Table:
-    """Empty table: the first column to the left, the others to the right.
+def grid(title: str, *columns: str, rows: Iterable[Iterable[RenderableType]] = ()) -> Table:
+    """Table: the first column to the left, the others to the right.
 
     A column without a name holds remarks, which wrap; numbers do not.
     """
@@ -71,6 +68,8 @@ def grid(title: str, *columns: str) -> Table:
     for index, column in enumerate(columns):
         justify = "right" if index and column else "left"
         table.add_column(column, justify=justify, no_wrap=bool(column))
+    for row in rows:
+        table.add_row(*row)
     return table
 
 
@@ -101,20 +100,17 @@ def point_table(point: OperatingPoint) -> Table:
 def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[RenderableType]:
     """Inputs, derived numbers at the highest speed, and the amount of work."""
     yield _inputs(scenario)
-    table = grid(
-        f"At {scenario.speeds[-1] * RPM:.0f} rpm", "model", _head("c", "µm"), "U m/s", "Sommerfeld",
-        "Reynolds", "Taylor", "Peclet", "Nahme", "dT adiab. K",
-    )  # fmt: skip
     numbers = ("sommerfeld", "reynolds", "taylor", "peclet", "nahme")
-    for case in cases:
-        table.add_row(
-            case["thermal_model"].value,
-            _SMALL.text(case["radial_clearance"]),
-            number(case["surface_speed"]),
-            *(number(case[f"{name}_number"]) for name in numbers),
-            number(case["adiabatic_temperature_rise"], 3),
-        )
-    yield table
+    yield grid(
+        f"At {scenario.speeds[-1] * RPM:.0f} rpm", "model", _head("c", "µm"), "U m/s",
+        *map(str.capitalize, numbers), "dT adiab. K",
+        rows=[
+            [case["thermal_model"].value, _SMALL.text(case["radial_clearance"]),
+             number(case["surface_speed"]), *(number(case[f"{name}_number"]) for name in numbers),
+             number(case["adiabatic_temperature_rise"], 3)]
+            for case in cases
+        ],
+    )  # fmt: skip
     heated = [case for case in cases if case["thermal_model"] is ThermalModel.THD]
     if heated:
         yield _warm_table(heated)
@@ -132,18 +128,17 @@ def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[Re
 def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
     """Flow numbers with the viscosity at supply temperature and in the estimated warm film."""
     heads = (_head("c", "µm"), _head("T", "°C"))
-    table = grid("Cold, and warm (estimated)", *heads, "mPa s", "Reynolds", "Taylor")
-    for case in cases:
-        cold = _SMALL.text(case["radial_clearance"]), "supply_temperature", ""
-        for clearance, temperature, state in (cold, ("", "warm_temperature", "warm_")):
-            table.add_row(
-                clearance,
-                QUANTITIES["max_temperature"].text(case[temperature]),
-                number(case[f"{state}viscosity"] * 1e3),
-                number(case[f"{state}reynolds_number"]),
-                number(case[f"{state}taylor_number"]),
-            )
-    return table
+    rows = [
+        [clearance, QUANTITIES["max_temperature"].text(case[temperature]),
+         number(case[f"{state}viscosity"] * 1e3), number(case[f"{state}reynolds_number"]),
+         number(case[f"{state}taylor_number"])]
+        for case in cases
+        for clearance, temperature, state in (
+            (_SMALL.text(case["radial_clearance"]), "supply_temperature", ""),
+            ("", "warm_temperature", "warm_"),
+        )
+    ]  # fmt: skip
+    return grid("Cold, and warm (estimated)", *heads, "mPa s", "Reynolds", "Taylor", rows=rows)
 
 
 def _inputs(scenario: Scenario) -> RenderableType:
@@ -215,8 +210,8 @@ def summary_table(curves: Sequence[StabilityCurve]) -> Table:
     table = grid(title, "bearing", "least M_crit kg", "threshold speeds rpm")
     for curve in curves:
         known = curve.critical_mass[np.isfinite(curve.critical_mass)]
-        least = number(float(known.min())) if known.size else "-"
-        table.add_row(curve.title, least, curve.thresholds_text)
+        table.add_row(curve.title, number(known.min() if known.size else None),
+                      curve.thresholds_text)  # fmt: skip
     return table
 
 
@@ -266,7 +261,9 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
     points = f": {sum(said['counts'].values())} film points, {counts}"
     yield Text.assemble("\n", (said["title"], "bold"), points)
     if said["heating"]:
-        yield _heating_table(said["heating"], rigid=not curves or not _flexible(curves[0]))
+        # Of a rotor that is not rigid no critical mass speaks.
+        rigid = not curves or not curves[0].rotor or curves[0].mass is not None
+        yield _heating_table(said["heating"], rigid=rigid)
         lines = "\n".join(_walls_lines(said["heating"]))
         if lines:
             yield lines
@@ -282,11 +279,6 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
     yield _files_table(said["files"])
     for path in said["files"].get("recording", []):
         yield f"Play it back: rotorsim view {as_typed(path)}"
-
-
-def _flexible(curve: StabilityCurve) -> bool:
-    """Whether the rotor is not the rigid one of which a critical mass speaks."""
-    return bool(curve.rotor) and curve.mass is None
 
 
 def _heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> Table:
@@ -308,7 +300,9 @@ def _heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> 
                 *([_critical_mass(one)] if rigid else []),
             )
         if {"isothermal", "thd"} <= set(models):
-            table.add_row("", "by heating", *_changes(row["isothermal"], row["thd"], rigid=rigid))
+            cold, hot = row["isothermal"], row["thd"]
+            changes = [_percent(cold[key], hot[key]) for key in (*_HEATED, "critical_mass")]
+            table.add_row("", "by heating", *changes[:-1], "", *(changes[-1:] if rigid else []))
         table.add_section()
     return table
 
@@ -336,12 +330,6 @@ def _critical_mass(one: Mapping[str, Any]) -> str:
     return said.removeprefix("always_").replace("_", " ") or "-"
 
 
-def _changes(cold: Mapping[str, Any], hot: Mapping[str, Any], *, rigid: bool) -> list[str]:
-    texts = [_percent(cold[key], hot[key]) for key in _HEATED]
-    mass = [_percent(cold["critical_mass"], hot["critical_mass"])] if rigid else []
-    return [*texts, "", *mass]
-
-
 def _percent(cold: float | None, hot: float | None) -> str:
     if not cold or hot is None or not math.isfinite(hot / cold):
         return ""
@@ -354,11 +342,11 @@ def _verdict_table(curves: Sequence[StabilityCurve]) -> Table:
     rotor = curves[0].rotor
     title = "Stability" + (f", {rotor}" if rotor else "")
     top = f"at {curves[0].speed[-1] * RPM:.0f} rpm"
-    table = grid(title, "bearing", *([top] if rotor else []), "threshold rpm")
-    for curve in curves:
-        verdict = [curve.verdict or "-"] if rotor else []
-        table.add_row(curve.title, *verdict, curve.thresholds_text)
-    return table
+    rows = [
+        [curve.title, *([curve.verdict or "-"] if rotor else []), curve.thresholds_text]
+        for curve in curves
+    ]
+    return grid(title, "bearing", *([top] if rotor else []), "threshold rpm", rows=rows)
 
 
 def _files_table(files: Mapping[str, Any]) -> Table:

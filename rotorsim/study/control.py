@@ -57,6 +57,12 @@ class ControlStudy:
     note: str
 
     @property
+    def saturates(self) -> bool:
+        """Whether the actuator reached its limit in the run in time."""
+        force = self.largest_force
+        return force is not None and force >= (1.0 - 1e-9) * self.feedback.max_force
+
+    @property
     def holds(self) -> bool:
         """Whether the closed loop is stable and the run in time ends nearer to rest than it began.
 
