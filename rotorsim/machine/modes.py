@@ -15,10 +15,10 @@ from .machine import Machine
 from .spectrum import MachineSpectrum, all_eigenmodes
 from .tracking import track_modes
 
-_FEWEST = 12
-"""Pairs of modes of a large machine, at least."""
+_FEWEST, _MOST = 12, 48
+"""Pairs of modes of a large machine."""
 _REACH = 3.0
-"""Their frequencies go up to this multiple of the highest speed, at least."""
+"""Up to this multiple of the highest speed all modes are wanted, if no more than `_MOST` pairs."""
 
 
 @on_one_blas_thread
@@ -32,8 +32,8 @@ def modes(machine: Machine, speed: ArrayLike | None = None, count: int | None = 
         Ascending [rad/s]; by default the longest run of tabulated speeds with coefficients.
     count : int, optional
         Pairs of eigenvalues, the lowest ones. By default all of a machine of up to 48 unknowns; of
-        a larger one 12, or more until three times the highest speed is reached: higher modes are
-        neither critical nor driven by films, seals or internal damping.
+        a larger one 12, or up to 48 until three times the highest speed is reached: higher modes
+        are neither critical nor driven by films, seals or internal damping.
 
     Returns
     -------
@@ -63,7 +63,7 @@ def machine_spectrum(machine: Machine, speeds: Array, count: int | None = None) 
         return MachineSpectrum(machine, count)
     top = float(np.max(np.abs(speeds), initial=0.0))
     spectrum = MachineSpectrum(machine, _FEWEST)
-    while not spectrum.complete:
+    while not spectrum.complete and spectrum.count < _MOST:
         found = spectrum(top)
         if found is None or np.abs(found.values).max(initial=0.0) >= _REACH * top:
             break

@@ -185,7 +185,7 @@ def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes
         good = residual < _CONVERGED
         if good.sum() >= 2 * count or size >= most:
             break
-        size = min(size + _EXTRA // 2, most)
+        size = min(size + max(_EXTRA // 2, size // 4), most)
     values: ComplexArray = np.asarray(1.0 / inverse - 1.0, dtype=complex)
     # Complete is what lies nearer to the shift than any eigenvalue not yet found.
     reach = np.abs(values[~good] + 1.0).min(initial=np.inf) - 1.0

@@ -20,6 +20,8 @@ _SMOOTH_MAC = 0.9
 _SMOOTH_CHANGE = 0.1
 _NEVER = 1e6
 """Cost of continuing a branch that has been lost."""
+_PATIENCE = 64, 8
+"""Parameters looked up for halved steps, and more of them for each value that is wanted."""
 
 
 @on_one_blas_thread
@@ -44,7 +46,7 @@ def track_modes(
     values = np.atleast_1d(np.asarray(parameter, dtype=float))
     if values.ndim != 1 or not np.all(np.isfinite(values)) or np.any(np.diff(values) <= 0.0):
         raise InputError("must be finite and ascend", key="parameter", value=parameter)
-    follow = _Follower(spectrum, wanted)
+    follow = _Follower(spectrum, wanted, _PATIENCE[0] + _PATIENCE[1] * values.size)
     first = follow.at(float(values[0]))
     order = np.lexsort((-first.values.imag, -np.round(first.values.real, 9)))
     rows = [first.taken(order)]
@@ -64,15 +66,20 @@ def track_modes(
     return found if throughout.all() else found.columns(np.flatnonzero(throughout))
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Follower:
-    """Carries the labels of modes from one parameter to the next."""
+    """Carries the labels of modes from one parameter to the next.
+
+    left : How many parameters may still be looked up.
+    """
 
     spectrum: Spectrum
     wanted: int | None
+    left: int
 
     def at(self, parameter: float) -> Eigenmodes:
         """Modes at one parameter."""
+        self.left -= 1
         found = self.spectrum(parameter)
         if found is None:
             raise InputError("the modes are not known here", key="parameter", value=parameter)
@@ -83,7 +90,7 @@ class _Follower:
     ) -> tuple[Eigenmodes, bool]:
         """Carry the labels from `low` to `high`, halving the step while modes change too much."""
         new, good = self._pair(state, self.at(high))
-        if good or depth == 0:
+        if good or depth == 0 or self.left <= 0:
             return new, good
         middle = 0.5 * (low + high)
         half, first = self.advance(low, state, middle, depth - 1)
