@@ -8,14 +8,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .whirl import rigid_thresholds
 
 if TYPE_CHECKING:
     from .table import CoefficientTable
 
-Array = NDArray[np.float64]
 _PLAUSIBLE_WHIRL = (0.1, 2.0)
 """Whirl frequency at the threshold over shaft speed; films of oil whirl at about one half."""
 _PLAUSIBLE_MASS = (1e-2, 1e7)

@@ -21,9 +21,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, eigvals
 
+from ..arrays import Array, ComplexArray
 from ..film.geometry import ROTATIONS, TRANSLATIONS, idle_pitches, pad_unknowns
 from ..film.linearization import DynamicStiffness, linearize
 from ..film.solution import FilmSolution
@@ -38,8 +38,6 @@ from .whirl import (
     threshold_misfit,
 )
 
-Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 _DEFAULT_RATIO = 0.5
 """Whirl over shaft frequency at which coefficients are stated where there is no threshold."""
 _NOTICEABLE = 0.01

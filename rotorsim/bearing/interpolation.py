@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array, Booleans, Indices
 from ..errors import InputError, OutOfRangeError, TableError
 from ..status import SolveStatus
 from .table_data import COEFFICIENTS, PAD_MATRICES, UNKNOWNS, build, common_unknowns
@@ -28,8 +29,8 @@ class Coefficients:
     Raises InputError: A matrix is not 2 x 2 or not finite, or the speed is below zero.
     """
 
-    stiffness: NDArray[np.float64]
-    damping: NDArray[np.float64]
+    stiffness: Array
+    damping: Array
     speed: float
     load: float | None = None
     radial_clearance: float | None = None
@@ -69,7 +70,6 @@ class Coefficients:
         )
 
 
-Array = NDArray[np.float64]
 _SPEED_TOLERANCE = 1e-9
 """Relative; two speeds nearer than this are the same one written in different units."""
 
@@ -91,13 +91,13 @@ class CoefficientInterpolator:
     """
 
     speeds: Array
-    converged: NDArray[np.bool_]
+    converged: Booleans
     cubic: Array
     constant: bool = False
 
     @classmethod
     def from_columns(
-        cls, speeds: Array, converged: NDArray[np.bool_], columns: Array, constant: bool = False
+        cls, speeds: Array, converged: Booleans, columns: Array, constant: bool = False
     ) -> CoefficientInterpolator:
         """Fit (n, 9) `columns` over ascending `speeds` [rad/s]."""
         from scipy.interpolate import PchipInterpolator
@@ -139,7 +139,7 @@ class CoefficientInterpolator:
         return self._mask_gaps(result, omega, i, gaps)
 
     def _mask_gaps(
-        self, result: Array, omega: Array, i: NDArray[np.intp], gaps: Literal["raise", "nan"]
+        self, result: Array, omega: Array, i: Indices, gaps: Literal["raise", "nan"]
     ) -> Array:
         above = np.append(self.converged[1:], True)
         on_knot = np.abs(omega - self.speeds[i]) <= _SPEED_TOLERANCE * self.speeds[i]
@@ -238,9 +238,7 @@ def refine(dataset: xr.Dataset, dimension: str, values: Array) -> xr.Dataset:
     ).assign_coords(dict.fromkeys(UNKNOWNS, unknowns))
 
 
-def _between_good(
-    usable: NDArray[np.bool_], below: NDArray[np.intp], known: Array, wanted: Array
-) -> NDArray[np.bool_]:
+def _between_good(usable: Booleans, below: Indices, known: Array, wanted: Array) -> Booleans:
     """Return whether both neighbours of each value converged, or the one that it falls on."""
     on_low = np.abs(wanted - known[below]) <= _SLACK * known[below]
     on_high = np.abs(wanted - known[below + 1]) <= _SLACK * known[below + 1]

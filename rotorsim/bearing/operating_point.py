@@ -12,15 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, ComplexArray, Indices
 from ..model import Case, EccentricityTarget, LoadTarget
 from ..status import SolveStatus, Stability
 
 if TYPE_CHECKING:
     from ..film.heat import HeatBalance
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -97,7 +95,7 @@ class FullCoefficients:
     damping: Array
     mass: Array
 
-    def reduced(self, s: complex) -> NDArray[np.complex128]:
+    def reduced(self, s: complex) -> ComplexArray:
         """Force per displacement that the journal feels of a motion exp(s t), (2, 2) or (4, 4)."""
         law = self.stiffness + s * self.damping + s * s * self.mass
         return condensed(law, 4 if _ROTATION in self.names else 2)
@@ -107,7 +105,7 @@ _ROTATION = "theta_x"
 """Name of the journal's rotation about x; it is there with its fellow or not at all."""
 
 
-def condensed(law: NDArray[np.complex128], kept: int) -> NDArray[np.complex128]:
+def condensed(law: ComplexArray, kept: int) -> ComplexArray:
     """Eliminate all unknowns but the first `kept`, on which alone forces act."""
     if law.shape[-1] == kept:
         return law
@@ -115,7 +113,7 @@ def condensed(law: NDArray[np.complex128], kept: int) -> NDArray[np.complex128]:
     return np.asarray(law[..., :kept, :kept] - law[..., :kept, kept:] @ own)
 
 
-def kept_throughout(speeds: Array, matrices: Array) -> tuple[NDArray[np.intp], Array]:
+def kept_throughout(speeds: Array, matrices: Array) -> tuple[Indices, Array]:
     """Keep the unknowns that all points have; eliminate the others at the shaft's frequency.
 
     speeds : (n,) array [rad/s]
@@ -124,7 +122,7 @@ def kept_throughout(speeds: Array, matrices: Array) -> tuple[NDArray[np.intp], A
 
     Returns the places of the unknowns kept, (k,), and their matrices (3, n, k, k).
     """
-    moving: NDArray[np.bool_] = np.isfinite(np.diagonal(matrices[0], axis1=1, axis2=2))
+    moving: Booleans = np.isfinite(np.diagonal(matrices[0], axis1=1, axis2=2))
     stays = np.asarray(moving.all(axis=0), dtype=bool)
     own = np.flatnonzero(stays)
     kept = matrices[:, :, own[:, None], own].copy()

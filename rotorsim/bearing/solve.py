@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import FilmFlow, film_flow
@@ -42,7 +42,6 @@ from .operating_point import FilmFields, OperatingPoint, failed_point
 from .pads import lacking_pads, pad_results, supply_warnings, unloaded_warnings
 from .whirl import rigid_threshold
 
-Array = NDArray[np.float64]
 _FOLLOWING = ViscosityResponse.FOLLOWING
 _PRESSURE_LIMIT = 400e6
 """[Pa]; a load that needs more than this is out of the model's range."""

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.solution import FilmSolution, WarmStart
 from ..film.storage import HeatStep, HeatStorage, SolidState
@@ -21,8 +21,6 @@ from ..model import Case, ThermalModel
 from ..status import SolveStatus
 from .operating_point import OperatingPoint, failed_point
 from .solve import operating_point, solved_film
-
-Array = NDArray[np.float64]
 
 _INSTANT = 1e-9
 """Length of the step that shows the film right after a jump, over the duration."""

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arrays import Array, Booleans, ComplexArray
 from ..errors import InputError
 from ..status import Stability
 
-Array = NDArray[np.float64]
 _ROUNDING = 1e-10
 """Of the norms of K and C: a smaller coefficient of s is what films' rounding errors leave."""
 
@@ -68,11 +68,11 @@ class _RouthCoefficients:
     det_shifted: Array
 
     @property
-    def may_be_stable(self) -> NDArray[np.bool_]:
+    def may_be_stable(self) -> Booleans:
         """Whether the conditions without the mass hold."""
         return (self.trace_damping > 0.0) & (self.cross > 0.0) & (self.det_stiffness > 0.0)
 
-    def stable(self, mass: ArrayLike) -> NDArray[np.bool_]:
+    def stable(self, mass: ArrayLike) -> Booleans:
         """Return whether every eigenvalue has a negative real part at `mass` [kg] (broadcast)."""
         slack = self.det_damping * self.equivalent_stiffness - np.asarray(mass) * self.det_shifted
         return self.may_be_stable & (slack > 0.0)
@@ -226,7 +226,6 @@ def rigid_threshold(
     )
 
 
-ComplexArray = NDArray[np.complex128]
 _RATIOS = np.linspace(0.0, 2.5, 51)
 """Whirl over shaft frequencies at which the film is solved; from the last on K and C are kept."""
 _FINE = np.linspace(0.0, _RATIOS[-1], 5001)[1:]

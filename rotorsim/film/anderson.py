@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .kernels import kernel
-
-Array = NDArray[np.float64]
 
 
 class AndersonMixer:

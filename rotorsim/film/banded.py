@@ -13,12 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
+from ..arrays import Array, Booleans
 from ..threads import one_blas_thread
 from .kernels import kernel
 from .operator import FilmOperator
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 _factorise, _solve = get_lapack_funcs(("pbtrf", "pbtrs"), dtype=np.float64)
 
 
@@ -41,7 +40,7 @@ class _FilmFactor:
 
     factor: Array
     order: NDArray[np.int64]
-    active: Flags
+    active: Booleans
 
     def solve(self, right: Array) -> Array:
         """Solve for (..., n, m) right-hand sides; inactive cells give 0."""
@@ -57,7 +56,7 @@ class _FilmFactor:
         return result.reshape(np.shape(right))
 
 
-def factor_operator(operator: FilmOperator, active: Flags) -> _FilmFactor:
+def factor_operator(operator: FilmOperator, active: Booleans) -> _FilmFactor:
     """Factor the conductance matrix restricted to the `active` cells."""
     order, folded = column_order(operator.interior, active)
     n, m = active.shape
@@ -77,10 +76,10 @@ def factor_operator(operator: FilmOperator, active: Flags) -> _FilmFactor:
     return _FilmFactor(factor=factor, order=order, active=active)
 
 
-def column_order(interior: Flags, active: Flags) -> tuple[NDArray[np.int64], bool]:
+def column_order(interior: Booleans, active: Booleans) -> tuple[NDArray[np.int64], bool]:
     """Columns in band order, and whether the ring had to be folded."""
     n = active.shape[0]
-    used: Flags = np.logical_or.reduce(active, axis=1)
+    used: Booleans = np.logical_or.reduce(active, axis=1)
     before = np.roll(active, 1, axis=0)
     joined = np.any(interior[0] & active & before, axis=1)  # to the column before
     cuts = np.flatnonzero(~joined)

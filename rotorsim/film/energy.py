@@ -14,12 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from .flow import FilmFlow
 from .kernels import kernel
 from .layers import LayerIntegrals
 from .operator import FilmOperator
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -59,8 +58,8 @@ class EnergyProblem:
     heat_capacity: float
     order: NDArray[np.int64]
     axial_order: NDArray[np.int64]
-    fixed: NDArray[np.bool_]
-    interior: NDArray[np.bool_]
+    fixed: Booleans
+    interior: Booleans
     dx: Array
     dy: Array
 

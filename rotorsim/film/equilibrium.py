@@ -11,13 +11,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .geometry import FilmGeometry
 from .linearization import stiffness_matrix
 from .problem import FilmProblem, FilmState
 
-Array = NDArray[np.float64]
 ECCENTRICITY_LIMITS = (1e-5, 0.9995)
 """Eccentricity ratios between which an equilibrium is sought."""
 CLEARANCE_KEPT = 5e-4

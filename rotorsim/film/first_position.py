@@ -19,8 +19,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model import Case, EccentricityTarget, LoadTarget
 from .banded import NoFilmError, SingularFilmError
 from .equilibrium import CLEARANCE_KEPT
@@ -29,7 +29,6 @@ from .layers import isoviscous_layers
 from .mesh import groove_edges, in_full_groove
 from .problem import FilmProblem, film_problem, film_state
 
-Array = NDArray[np.float64]
 _Position = tuple[float, float]
 _Corner = tuple[float, float]
 """Share of the way to the bore, and angle [rad]."""

@@ -11,15 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from .kernels import kernel
 from .layers import LayerIntegrals
 from .operator import FilmOperator, neighbour
 from .problem import FilmState
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -44,8 +41,8 @@ class FilmFlow:
     step: Array
     poiseuille: Array
     couette: Array
-    shared: Flags
-    inlet: Flags
+    shared: Booleans
+    inlet: Booleans
     flux: Array
     liquid_fraction: Array
     fresh_fraction: Array

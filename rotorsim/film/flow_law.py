@@ -13,14 +13,13 @@ from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model import Case, FlowRegime
 from .layers import LayerIntegrals, TurbulentIntegrals
 from .roughness import RoughFlow
 from .turbulence import TURBULENT_PRANDTL, integrate, layer_tables
 
-Array = NDArray[np.float64]
 POISEUILLE_POWER = 3
 """d ln(flow)/d ln(h) of the Poiseuille part of Dowson's equation at given F_2."""
 COUETTE_POWER = 1

@@ -15,15 +15,13 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..model import Bearing, Pad
 
 if TYPE_CHECKING:
     from .mesh import FilmMesh
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 TRANSLATIONS = ("x", "y")
 ROTATIONS = ("theta_x", "theta_y")
@@ -87,9 +85,9 @@ class FilmGeometry:
 
     rest: Array
     displacements: Displacements
-    land: Flags
+    land: Booleans
     multiplicity: float
-    still: Flags | None = None
+    still: Booleans | None = None
 
     def thickness(self, q: Array) -> Array:
         """Film thickness [m], (5, n, m), at the displacements `q`."""
@@ -107,7 +105,7 @@ class FilmGeometry:
         """Smallest film thickness [m] of the lands at `q`; not positive where the walls touch."""
         return self.thinnest(self.thickness(q))
 
-    def without(self, columns: Flags, q: Array) -> FilmGeometry:
+    def without(self, columns: Booleans, q: Array) -> FilmGeometry:
         """Return the geometry whose film in `columns` (n,) stays as it is at `q`, without force."""
         rest = self.rest.copy()
         rest[:, columns] = self.thickness(q)[:, columns]

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model import Bearing
 from ..model.expansion import Expansion
 from .banded import NoFilmError
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from .problem import FilmProblem
     from .walls import Walls
 
-Array = NDArray[np.float64]
 _LARGEST_CHANGE = 1.4
 """Factor by which one iteration may change the clearance."""
 _LEAST_CLEARANCE = 0.02

@@ -8,15 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..model import Feed, InletModel
 from .energy import EnergyProblem, dissipation
 from .flow import FilmFlow, film_flow
 from .operator import EAST, NORTH, SOUTH, WEST
 from .problem import FilmProblem, FilmState
 from .walls import FilmContact, Walls
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -122,7 +120,7 @@ def _march_order(problem: FilmProblem, flow: FilmFlow) -> NDArray[np.int64]:
     return (first + np.arange(n)) % n
 
 
-def _layer_fluxes(energy: EnergyProblem, face: int, cells: Flags) -> Array:
+def _layer_fluxes(energy: EnergyProblem, face: int, cells: Booleans) -> Array:
     """Return every layer's flux [m3/s] through one face of the chosen cells, (cells, k)."""
     flow, layers = energy.flow, energy.layers
     i, j = np.nonzero(cells)
@@ -303,7 +301,7 @@ def _in_layers(
     return result
 
 
-def entering_temperature(energy: EnergyProblem, inlet: Array, columns: Flags) -> float:
+def entering_temperature(energy: EnergyProblem, inlet: Array, columns: Booleans) -> float:
     """Mean temperature [K] of the oil that enters the first faces of `columns` (n,)."""
     open_ = energy.flow.inlet & columns[:, None]
     flux = np.maximum(_layer_fluxes(energy, WEST, open_), 0.0)
@@ -312,7 +310,7 @@ def entering_temperature(energy: EnergyProblem, inlet: Array, columns: Flags) ->
     return float(np.sum(flux * entering)) / total if total > 0.0 else math.nan
 
 
-def _exits(energy: EnergyProblem) -> NDArray[np.bool_]:
+def _exits(energy: EnergyProblem) -> Booleans:
     """Find the cells whose east face leads into a groove, a slot or a re-formed film's inlet."""
     return (~energy.interior[EAST] | np.roll(energy.flow.inlet, -1, axis=0)) & ~energy.fixed
 

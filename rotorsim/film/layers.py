@@ -16,11 +16,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .kernels import kernel
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
+from ..arrays import Array, Booleans, ComplexArray
 from .flow_law import COUETTE_POWER, POISEUILLE_POWER
 from .geometry import CENTER, Displacements, turnings
 from .kernels import kernel
@@ -31,8 +32,6 @@ from .operator import WEST, StepFaces, film_operator, neighbour
 from .problem import FilmState
 from .rupture import BorderedFactor, Factor
 from .thd import ThermalFilm, solve_thermal_film
-
-Array = NDArray[np.float64]
 
 _RELATIVE_STEP = 2e-3
 """Displacement of `following_stiffness`, relative to the thinnest film."""
@@ -69,7 +68,7 @@ class _Motions:
         return np.asarray(-multiplicity * shapes @ perturbed.reshape(len(right), -1).T)
 
 
-def _filled(factor: Factor) -> NDArray[np.bool_]:
+def _filled(factor: Factor) -> Booleans:
     """Cells of recesses whose pressure the factor solves for, (n, m) or ()."""
     return factor.filled if isinstance(factor, BorderedFactor) else np.zeros((), dtype=bool)
 
@@ -122,7 +121,7 @@ class DynamicStiffness:
         self._rupture = state.problem.rupture
         self._volume = state.center_thickness * state.operator.area
 
-    def __call__(self, s: complex) -> NDArray[np.complex128]:
+    def __call__(self, s: complex) -> ComplexArray:
         """Return A(s) [N/m], (q, q), film frame."""
         blocks = []
         for motions, sources in zip(self._motions, self._sources, strict=True):

@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model import RupturedFriction
 from .flow import FilmFlow
 from .flow_law import POISEUILLE_POWER
 from .geometry import CENTER, rotations
 from .operator import NORTH, SOUTH, WEST
 from .problem import FilmState
-
-Array = NDArray[np.float64]
 
 _DEFAULT_END_LAND = 0.01
 """Over the bearing's length: land at an end of a groove that is not sealed."""

@@ -14,12 +14,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..errors import InputError
 from ..model import Bearing, FilmSettings, Groove, Inception
 from ..model.bearing import angle_between
 from .geometry import bore_offset
-
-Array = NDArray[np.float64]
 
 # Part of the cells that follows 1/h; the rest is spread evenly. 1/h is the density of Sommerfeld's
 # variable, in which a thin film's pressure is as smooth as a thick one's.
@@ -46,7 +45,7 @@ class FilmMesh:
     y_faces: Array
     half: bool
     supply: NDArray[np.int64]
-    slot: NDArray[np.bool_]
+    slot: Booleans
     region: NDArray[np.int64]
     radius: float
 
@@ -55,7 +54,7 @@ class FilmMesh:
         return np.concatenate([field[:, ::-1], field], axis=1) if self.half else field
 
     @property
-    def whole_y(self) -> NDArray[np.float64]:
+    def whole_y(self) -> Array:
         """Axial cell centres over the whole length [m]."""
         return np.concatenate([-self.y[::-1], self.y]) if self.half else self.y
 
@@ -218,7 +217,7 @@ def groove_edges(groove: Groove) -> tuple[float, float]:
     return groove.center - groove.extent / 2.0, groove.center + groove.extent / 2.0
 
 
-def in_full_groove(bearing: Bearing, theta: Array) -> NDArray[np.bool_]:
+def in_full_groove(bearing: Bearing, theta: Array) -> Booleans:
     """Return which angles lie inside a full-length groove."""
     inside = np.zeros(theta.shape, dtype=bool)
     for groove in bearing.grooves:
@@ -304,7 +303,7 @@ def _supply_cells(
     return supply, y_faces
 
 
-def _joints(bearing: Bearing, theta_faces: Array) -> NDArray[np.bool_]:
+def _joints(bearing: Bearing, theta_faces: Array) -> Booleans:
     """Columns at whose first face a lobe or a groove begins or ends."""
     first = theta_faces[:-1]
     joint = np.zeros(first.size, dtype=bool)
@@ -313,7 +312,7 @@ def _joints(bearing: Bearing, theta_faces: Array) -> NDArray[np.bool_]:
     return joint
 
 
-def _regions(supply: NDArray[np.int64], begins: NDArray[np.bool_]) -> NDArray[np.int64]:
+def _regions(supply: NDArray[np.int64], begins: Booleans) -> NDArray[np.int64]:
     """Stretches of film between slots, joints and grooves; -1 in full-length grooves."""
     blocked = np.asarray((supply >= 0).all(axis=1), dtype=bool)
     region = np.full(blocked.size, -1, dtype=np.int64)

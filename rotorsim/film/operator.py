@@ -13,15 +13,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans, Indices
 from .flow_law import COUETTE_POWER, POISEUILLE_POWER
 from .kernels import kernel
 from .layers import LayerIntegrals
 from .mesh import FilmMesh
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 WEST, EAST, SOUTH, NORTH = 0, 1, 2, 3
 _STEP = 1e-6
 """Relative difference of the film thickness on both sides of a face that counts as a step."""
@@ -46,12 +44,12 @@ class FilmOperator:
     """
 
     conductance: Array
-    interior: Flags
+    interior: Booleans
     fixed_pressure: Array
     face_thickness: Array
     couette: Array
     spacing: Array
-    fixed: Flags
+    fixed: Booleans
     area: Array
     dx: Array
     dy: Array
@@ -70,8 +68,8 @@ class StepFaces:
     own_couette, other_couette : U h (1 - G) (face length) of either side [m3/s]; 0 along the axis.
     """
 
-    at: tuple[NDArray[np.intp], ...]
-    beyond: tuple[NDArray[np.intp], ...]
+    at: tuple[Indices, ...]
+    beyond: tuple[Indices, ...]
     own: Array
     other: Array
     own_couette: Array
@@ -92,7 +90,7 @@ class StepFaces:
         """Flow without a pressure difference between the cells [m3/s]."""
         return self.own_couette * self.share + self.other_couette * (1.0 - self.share)
 
-    def half_losses(self, full: Flags) -> Array:
+    def half_losses(self, full: Booleans) -> Array:
         """Half the power that pressure on the face itself costs [W], where both cells are full.
 
         What the Couette flows of both sides differ by flows off against both half cells.
@@ -105,10 +103,10 @@ class StepFaces:
 class FaceTopology:
     """What of the operator depends on the mesh and the supply only."""
 
-    interior: Flags
+    interior: Booleans
     fixed_pressure: Array
     spacing: Array
-    fixed: Flags
+    fixed: Booleans
     area: Array
     dx: Array
     dy: Array
@@ -251,7 +249,7 @@ def _step_faces(
     along = face < 2
     width = np.where(along, topology.dy[j], topology.dx[i])
 
-    def half(h: Array, row: NDArray[np.intp], column: NDArray[np.intp]) -> tuple[Array, Array]:
+    def half(h: Array, row: Indices, column: Indices) -> tuple[Array, Array]:
         mobility = np.where(along, layers.f2[row, column], layers.f2_axial[row, column])
         reach = 0.5 * np.where(along, topology.dx[row], topology.dy[column])
         drawn = surface_speed * h * (1.0 - layers.g[row, column]) * width

@@ -6,14 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..model import Bearing, Pad
 from .geometry import PadUnknowns, pad_unknowns
 from .mesh import FilmMesh
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -30,7 +27,7 @@ class PadFrame:
     clearance: float
     preload: float
     arm: float
-    columns: Flags
+    columns: Booleans
     unknowns: PadUnknowns
     sine: Array
 

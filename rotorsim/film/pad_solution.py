@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model import Case, EccentricityTarget
 from ..status import SolveStatus
 from .anderson import AndersonMixer
@@ -19,8 +19,6 @@ from .problem import FilmProblem, FilmState, film_problem, film_state
 from .solution import FilmSolution, WallsOf, WarmStart
 from .thd import ThermalFilm, packed, solve_thermal_film, uniform_heat, unpacked
 from .walls import choose_walls
-
-Array = NDArray[np.float64]
 
 _FORCE_TOLERANCE = 1e-10
 """Of isothermal films: cross terms that vanish by symmetry are to vanish."""

@@ -24,8 +24,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..model import EccentricityTarget, Target
 from ..model.operating import is_unloaded
 from .banded import NoFilmError
@@ -36,9 +36,6 @@ from .layers import LayerIntegrals
 from .linearization import stiffness_matrix
 from .pad_frame import PadFrame, pad_frames
 from .problem import FilmProblem, FilmState, film_state
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _RETURNS = 3
 """Times that a pad may become unloaded and loaded again before its E_n may no longer cross zero."""
@@ -345,7 +342,7 @@ class PadSearch:
             elif above:
                 brackets[number] = (max(frame.level_tilt(q), limits[0]), limits[1])
             q[frame.unknowns.tilt] = frame.idle_tilt(limits, q)
-        full: Flags | None = None
+        full: Booleans | None = None
         if asked:
             found, full = self._sampled(q, asked, layers)
             brackets.update(found)
@@ -398,7 +395,7 @@ class PadSearch:
 
     def _sampled(
         self, q: Array, asked: list[int], layers: LayerIntegrals
-    ) -> tuple[dict[int, tuple[float, float]], Flags | None]:
+    ) -> tuple[dict[int, tuple[float, float]], Booleans | None]:
         """Bracket the uppermost root of each pad `asked` for, where its moment falls."""
         film = self.whole.geometry.thickness(q)
         limits = {n: self.frames[n].tilt_limits(film, q) for n in asked}
@@ -430,7 +427,7 @@ class PadSearch:
         q: Array,
         roots: dict[int, _Root],
         layers: LayerIntegrals,
-        full: Flags | None,
+        full: Booleans | None,
     ) -> Array:
         """Find all bracketed roots roughly, each pad by itself but in the same films (Illinois)."""
         for _ in range(40):

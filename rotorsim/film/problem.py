@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Booleans
 from ..model import (
     Bearing,
     Case,
@@ -32,8 +33,6 @@ from .rupture import (
     RuptureCondition,
     rupture_condition,
 )
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -157,8 +156,8 @@ def film_state(
     layers: LayerIntegrals,
     *,
     velocity: ArrayLike | None = None,
-    start: NDArray[np.bool_] | None = None,
-    frozen: NDArray[np.bool_] | None = None,
+    start: Booleans | None = None,
+    frozen: Booleans | None = None,
 ) -> FilmState:
     """Solve for pressure and forces at the displacements q.
 

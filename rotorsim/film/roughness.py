@@ -15,15 +15,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model import SurfaceRoughness
 from .layers import LayerIntegrals
 
 if TYPE_CHECKING:
     from .flow_law import FlowLaw
 
-Array = NDArray[np.float64]
 
 _PRESSURE = {
     1 / 9: (1.48, 0.42), 1 / 6: (1.38, 0.42), 1 / 3: (1.18, 0.42), 1.0: (0.90, 0.56),

@@ -8,8 +8,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..model import (
     Bearing,
     Case,
@@ -45,7 +45,6 @@ from .thd import (
 )
 from .walls import Walls, choose_walls
 
-Array = NDArray[np.float64]
 _Position = tuple[float, float]
 WallsOf = Callable[[FilmProblem], Walls]
 """Makes the walls of a heated film's problem."""
@@ -78,7 +77,7 @@ class WarmStart:
 
     position: _Position
     heat: Heat | None
-    full: NDArray[np.bool_]
+    full: Booleans
     pads: Array | None = None
 
 

@@ -12,9 +12,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import solve_banded
 
+from ..arrays import Array
 from ..model import ShaftModel
 from ..model.transient import ShaftMaterial, SolidMaterial
 from .bush import BushOperator
@@ -22,8 +22,6 @@ from .problem import FilmProblem
 from .solution import FilmSolution
 from .thd import ThermalFilm
 from .walls import FilmContact, Walls, _ConductingBush, _ConductingPads, _Wall, choose_walls
-
-Array = NDArray[np.float64]
 
 _SHAFT_CELLS = 16
 _HARMONICS = 16

@@ -23,8 +23,9 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array, Booleans
 from ..model import InletModel
 from .anderson import AndersonMixer
 from .energy import EnergyProblem, WallTemperatures, march
@@ -42,8 +43,6 @@ from .layers import layer_integrals
 from .problem import FilmProblem, FilmState, film_state
 from .walls import FilmContact, Walls, choose_walls
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 _TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
 _SPREAD_WEIGHT = 0.1
@@ -141,7 +140,7 @@ def solve_thermal_film(
     initial: Heat | None = None,
     move: _Move | None = None,
     walls: Walls | None = None,
-    full: Flags | None = None,
+    full: Booleans | None = None,
     proceed: Callable[[FilmState], bool] | None = None,
     force_tolerance: float = 1e-7,
     tolerance: float = _TOLERANCE,
@@ -255,11 +254,11 @@ class _Progress:
     no more than a few cells break the rupture condition, which is the mesh's own uncertainty.
     """
 
-    kept: Flags | None
+    kept: Booleans | None
     """Full cells, while their states are kept."""
     given: bool
     """Whether they are kept throughout, as the caller asked."""
-    guess: Flags | None = None
+    guess: Booleans | None = None
     """First guess of the full cells."""
     history: list[float] = field(default_factory=list)
     release: int = _FREEZE_AFTER

@@ -22,11 +22,10 @@ import math
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .kernels import kernel
 
-Array = NDArray[np.float64]
 KAPPA, SUBLAYER = 0.4, 10.7
 """Reichardt's kappa and d (Ng 1964)."""
 TURBULENT_PRANDTL = 0.9

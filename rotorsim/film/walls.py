@@ -16,15 +16,13 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Booleans
 from ..errors import InputError
 from ..model import BushModel, ShaftModel
 from .bush import BushOperator, kept_operator
 from .energy import EnergyProblem
 from .problem import FilmProblem
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -227,7 +225,7 @@ class _ConductingPads(_Wall):
     columns : tuple of (n,) bool arrays. Cells of each pad.
     """
 
-    columns: tuple[NDArray[np.bool_], ...]
+    columns: tuple[Booleans, ...]
     operators: tuple[BushOperator, ...]
     ambient: float
 
@@ -310,7 +308,7 @@ class Walls:
 
     bush: _Wall
     shaft: _Wall
-    pads: tuple[NDArray[np.bool_], ...] = ()
+    pads: tuple[Booleans, ...] = ()
     ring: float = 0.0
 
     def bodies(self, bush: Array) -> Array:

@@ -9,8 +9,9 @@ from enum import StrEnum
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InputError
 from .entries import (
     NOT_IN_FILES,
@@ -29,10 +30,8 @@ from .entries import (
 from .pads import FULL_TURN, Pad, check_order, gaps
 from .restrictors import AnyRestrictor, Pump
 
-Array = NDArray[np.float64]
 
-
-def angle_between(theta: ArrayLike, other: float) -> NDArray[np.float64]:
+def angle_between(theta: ArrayLike, other: float) -> Array:
     """Angle from `other` to `theta`, the short way round: -pi to pi [rad]."""
     return (np.asarray(theta) - other + math.pi) % FULL_TURN - math.pi
 

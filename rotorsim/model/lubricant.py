@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Annotated, NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InputError
 from .entries import Example, Leaf, Number, Quantity, Temperature, check
 
@@ -30,7 +31,7 @@ _Conductivity = Annotated[float, Quantity("thermal conductivity")]
 class ViscosityLaw(Protocol):
     """Dynamic viscosity as a function of temperature."""
 
-    def viscosity(self, temperature: ArrayLike) -> NDArray[np.float64]:
+    def viscosity(self, temperature: ArrayLike) -> Array:
         """Dynamic viscosity [Pa s] at `temperature` [K]."""
         ...
 
@@ -61,7 +62,7 @@ class ExponentialViscosity:
     def __post_init__(self) -> None:
         check(self, "lubricant")
 
-    def viscosity(self, temperature: ArrayLike) -> NDArray[np.float64]:
+    def viscosity(self, temperature: ArrayLike) -> Array:
         """Dynamic viscosity [Pa s] at `temperature` [K]."""
         difference = np.asarray(temperature, dtype=float) - self.reference_temperature
         return self.reference_viscosity * np.exp(-self.temperature_coefficient * difference)
@@ -121,7 +122,7 @@ class WaltherViscosity:
             density,
         )
 
-    def viscosity(self, temperature: ArrayLike) -> NDArray[np.float64]:
+    def viscosity(self, temperature: ArrayLike) -> Array:
         """Dynamic viscosity [Pa s] at `temperature` [K]."""
         log_t = np.log10(np.asarray(temperature, dtype=float))
         nu = 10.0 ** (10.0 ** (self.intercept - self.slope * log_t)) - 0.7
@@ -197,7 +198,7 @@ class Lubricant:
     def __post_init__(self) -> None:
         check(self, "lubricant")
 
-    def viscosity(self, temperature: ArrayLike) -> NDArray[np.float64]:
+    def viscosity(self, temperature: ArrayLike) -> Array:
         """Dynamic viscosity [Pa s] at `temperature` [K]."""
         return self.law.viscosity(temperature)
 

@@ -8,11 +8,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Booleans
 from ..banded import factor_operator
 from ..operator import FilmOperator
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 class Factor(Protocol):
@@ -40,7 +38,7 @@ class PressureSolution:
 
     pressure: Array
     raw: Array
-    full: Flags
+    full: Booleans
     factor: Factor
     steps: int
     converged: bool
@@ -71,9 +69,9 @@ class RuptureCondition(Protocol):
         operator: FilmOperator,
         *,
         squeeze: Array | None = None,
-        start: Flags | None = None,
+        start: Booleans | None = None,
         region: NDArray[np.int64] | None = None,
-        frozen: Flags | None = None,
+        frozen: Booleans | None = None,
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve for the pressure of the operator's film.
 

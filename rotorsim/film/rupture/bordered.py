@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Booleans
 from .base import Factor
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -37,13 +35,13 @@ class BorderedFactor:
     weights: Array
     columns: NDArray[Any]
     diagonal: Array
-    cells: Flags
+    cells: Booleans
     returned: Array
     holds_pressure: bool = False
 
     @classmethod
     def of(
-        cls, film: Factor, inflow: Array, weights: Array, diagonal: Array, cells: Flags,
+        cls, film: Factor, inflow: Array, weights: Array, diagonal: Array, cells: Booleans,
         returned: Array, *, holds_pressure: bool = False,
     ) -> BorderedFactor:  # fmt: skip
         """Solve for the columns."""
@@ -59,7 +57,7 @@ class BorderedFactor:
         )
 
     @property
-    def filled(self) -> Flags:
+    def filled(self) -> Booleans:
         """Cells of grooves whose pressure is an unknown, (n, m)."""
         return np.asarray(self.cells.any(axis=0) & self.holds_pressure, dtype=bool)
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import get_lapack_funcs
 
+from ...arrays import Array, Booleans
 from ..banded import SingularFilmError, column_order
 from ..kernels import kernel
 from ..operator import FilmOperator
@@ -23,9 +24,6 @@ from .base import Factor, PressureSolution, with_fixed
 from .bordered import BorderedFactor
 from .reynolds import Reynolds
 from .starvation import OilSupply
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 _MAX_STEPS = 200
 
@@ -51,8 +49,8 @@ class MixedFactor:
     width: int
     order: NDArray[np.int64]
     scale: float
-    full: Flags
-    film: Flags
+    full: Booleans
+    film: Booleans
     _factors: tuple[Any, Any] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -122,9 +120,9 @@ class MassConserving:
         operator: FilmOperator,
         *,
         squeeze: Array | None = None,
-        start: Flags | None = None,
+        start: Booleans | None = None,
         region: NDArray[np.int64] | None = None,
-        frozen: Flags | None = None,
+        frozen: Booleans | None = None,
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve for pressure and liquid fraction; see `RuptureCondition.solve`."""
         del region
@@ -157,8 +155,8 @@ def _solve(
     supply: OilSupply | None,
     *,
     squeeze: Array | None = None,
-    start: Flags | None = None,
-    frozen: Flags | None = None,
+    start: Booleans | None = None,
+    frozen: Booleans | None = None,
 ) -> tuple[FilmOperator, PressureSolution]:
     """Pressure and liquid fraction of the operator's film.
 
@@ -232,8 +230,8 @@ def _supplied(
     factor: MixedFactor,
     right: Array,
     operator: FilmOperator,
-    full: Flags,
-    starved: Flags,
+    full: Booleans,
+    starved: Booleans,
 ) -> tuple[MixedFactor | BorderedFactor, Array, Array]:
     """Factor, unknowns, and the fraction that each opening could fill of its pad's leading edge."""
     bordered: MixedFactor | BorderedFactor = factor
@@ -255,7 +253,7 @@ def _carried_fraction(operator: FilmOperator, liquid: Array) -> Array:
     return np.stack([west, liquid])
 
 
-def _worst_changes(full: Flags, update: Flags, unknown: Array) -> Flags:
+def _worst_changes(full: Booleans, update: Booleans, unknown: Array) -> Booleans:
     """Change only the cells that break their bound at least half as badly as the worst does."""
     wrong = update != full
     pressure_scale = max(float(np.abs(np.where(full, unknown, 0.0)).max()), 1e-300)
@@ -266,7 +264,7 @@ def _worst_changes(full: Flags, update: Flags, unknown: Array) -> Flags:
 
 
 def _mixed_system(
-    operator: FilmOperator, full: Flags, rate: Array, filled: Array
+    operator: FilmOperator, full: Booleans, rate: Array, filled: Array
 ) -> tuple[MixedFactor, Array]:
     """Factor and right-hand side; `filled` (n,) is the fraction that enters at open first faces."""
     everything = np.ones_like(full)

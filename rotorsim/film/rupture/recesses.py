@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Booleans
 from ...model import Bearing, Lubricant
 from ...model.restrictors import Restrictor
 from ..mesh import FilmMesh
@@ -25,8 +26,6 @@ from ..operator import EAST, NORTH, SOUTH, WEST, FilmOperator
 from .base import Factor, PressureSolution, RuptureCondition
 from .bordered import BorderedFactor
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 _MOST_STEPS = 60
 _TOLERANCE = 1e-12
 """Last step of a recess' pressure, relative to the largest pressure of supply and recesses."""
@@ -48,8 +47,8 @@ class Recesses:
     supply: Array
     viscosity: Array
     density: float
-    cells: Flags
-    touching: Flags
+    cells: Booleans
+    touching: Booleans
     share: float
 
     @classmethod
@@ -94,7 +93,7 @@ class Recesses:
         return replace(operator, fixed_pressure=fixed)
 
     def bordered(
-        self, operator: FilmOperator, solution: PressureSolution, slope: Array, free: Flags
+        self, operator: FilmOperator, solution: PressureSolution, slope: Array, free: Booleans
     ) -> BorderedFactor:
         """Border the film's factor by the balances of the `free` recesses."""
         faces = self.touching[free]
@@ -142,9 +141,9 @@ class FedFilm:
         operator: FilmOperator,
         *,
         squeeze: Array | None = None,
-        start: Flags | None = None,
+        start: Booleans | None = None,
         region: NDArray[np.int64] | None = None,
-        frozen: Flags | None = None,
+        frozen: Booleans | None = None,
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve for the film's pressure and the recesses'; see `RuptureCondition.solve`."""
         recesses = self.recesses

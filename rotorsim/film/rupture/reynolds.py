@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Booleans
 from ..banded import factor_operator
 from ..kernels import kernel
 from ..operator import FilmOperator
 from .base import ConnectedFilm, PressureSolution, source_term, with_fixed
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 _MAX_ACTIVE_SET_STEPS = 400
 _COARSEST = 16
 """Cells around below which no coarser mesh is used for the first guess."""
@@ -41,9 +40,9 @@ class Reynolds(ConnectedFilm):
         operator: FilmOperator,
         *,
         squeeze: Array | None = None,
-        start: Flags | None = None,
+        start: Booleans | None = None,
         region: NDArray[np.int64] | None = None,
-        frozen: Flags | None = None,
+        frozen: Booleans | None = None,
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve the complementarity problem; see `RuptureCondition.solve`."""
         source = source_term(operator, squeeze)
@@ -62,7 +61,7 @@ class Reynolds(ConnectedFilm):
         return operator, solution
 
 
-def _coarse_guess(operator: FilmOperator, source: Array) -> Flags:
+def _coarse_guess(operator: FilmOperator, source: Array) -> Booleans:
     """Full cells of the same film on a mesh twice as coarse, itself begun on a coarser one.
 
     The active set moves by about a cell a step, so that without this the number of steps would grow
@@ -126,7 +125,7 @@ def _coarsened(operator: FilmOperator) -> FilmOperator:
 
 
 def _active_set(
-    operator: FilmOperator, source: Array, allowed: Flags, full: Flags
+    operator: FilmOperator, source: Array, allowed: Booleans, full: Booleans
 ) -> PressureSolution:
     scale = float(np.abs(source).max())
     if not full.any():
@@ -159,7 +158,7 @@ def _active_set(
     return PressureSolution(pressure, pressure, full, factor, steps, converged)
 
 
-def _on_frozen_set(operator: FilmOperator, source: Array, full: Flags) -> PressureSolution:
+def _on_frozen_set(operator: FilmOperator, source: Array, full: Booleans) -> PressureSolution:
     factor = factor_operator(operator, full)
     pressure = factor.solve(source)
     update = np.empty_like(full)

@@ -5,12 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Booleans
 from ..banded import factor_operator
 from ..operator import FilmOperator
 from .base import ConnectedFilm, Factor, PressureSolution, source_term, with_fixed
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 class FullSommerfeld(ConnectedFilm):
@@ -21,9 +19,9 @@ class FullSommerfeld(ConnectedFilm):
         operator: FilmOperator,
         *,
         squeeze: Array | None = None,
-        start: Flags | None = None,
+        start: Booleans | None = None,
         region: NDArray[np.int64] | None = None,
-        frozen: Flags | None = None,
+        frozen: Booleans | None = None,
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve once; see `RuptureCondition.solve`."""
         del start, region, frozen
@@ -41,9 +39,9 @@ class HalfSommerfeld(ConnectedFilm):
         operator: FilmOperator,
         *,
         squeeze: Array | None = None,
-        start: Flags | None = None,
+        start: Booleans | None = None,
         region: NDArray[np.int64] | None = None,
-        frozen: Flags | None = None,
+        frozen: Booleans | None = None,
     ) -> tuple[FilmOperator, PressureSolution]:
         """Solve once and keep what is positive; see `RuptureCondition.solve`."""
         del start, region

@@ -18,14 +18,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array, Booleans
 from ..operator import EAST, WEST, FilmOperator
 from .bordered import BorderedFactor
 
 if TYPE_CHECKING:
     from .mass_conserving import MixedFactor
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -50,7 +48,7 @@ class OilSupply:
     def _trailing(self) -> NDArray[np.int64]:
         return np.where(self.groove < 0, np.roll(self.groove, -1), -1)
 
-    def filled(self, starved: Flags) -> Array:
+    def filled(self, starved: Booleans) -> Array:
         """Fraction of each column's first face that is full whatever arrives, (n,): 1 or 0."""
         return np.where((self._leading >= 0) & starved[self._leading], 0.0, 1.0)
 
@@ -58,7 +56,7 @@ class OilSupply:
         """Liquid fraction on each column's first face where oil enters there, (n,)."""
         return np.where(self._leading >= 0, fractions[self._leading], 1.0)
 
-    def balance(self, operator: FilmOperator, full: Flags) -> tuple[Array, Array, Array]:
+    def balance(self, operator: FilmOperator, full: Booleans) -> tuple[Array, Array, Array]:
         """Demand D (g,) [m3/s], and what comes back: weights of the unknowns, (g, n, m), and rest.
 
         The unknowns are the pressures in full cells, liquid fractions in others.
@@ -74,7 +72,7 @@ class OilSupply:
         return demand, weights, rest
 
     def bordered(
-        self, factor: MixedFactor, operator: FilmOperator, full: Flags, starved: Flags
+        self, factor: MixedFactor, operator: FilmOperator, full: Booleans, starved: Booleans
     ) -> BorderedFactor:
         """Border the film's factor by the balances of the `starved` openings, (g,)."""
         demand, weights, _ = self.balance(operator, full)
@@ -90,8 +88,8 @@ class OilSupply:
         )
 
     def at_rest(
-        self, factor: BorderedFactor, right: Array, operator: FilmOperator, full: Flags,
-        starved: Flags,
+        self, factor: BorderedFactor, right: Array, operator: FilmOperator, full: Booleans,
+        starved: Booleans,
     ) -> tuple[Array, Array]:  # fmt: skip
         """Solution of the film, and the fractions (s,) that enter behind the `starved` openings."""
         _, _, rest = self.balance(operator, full)
