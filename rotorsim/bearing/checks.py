@@ -66,14 +66,14 @@ class DerivedNumbers:
 
 
 def _temperature_coefficient(case: Case, temperature: float) -> float:
-    """-d ln(mu)/dT [1/K] of the case's oil at `temperature` [K], by a central difference."""
+    """Return -d ln(mu)/dT [1/K] of the case's oil at `temperature` [K], by a central difference."""
     step = 0.01
     low, high = (float(case.lubricant.viscosity(temperature + s)) for s in (-step, step))
     return math.log(low / high) / (2.0 * step)
 
 
 def derived_numbers(case: Case, speed: float) -> DerivedNumbers:
-    """Numbers that tell what kind of problem a case is.
+    """Return the numbers that tell what kind of problem a case is.
 
     speed : [rad/s]
 
@@ -127,7 +127,7 @@ def derived_numbers(case: Case, speed: float) -> DerivedNumbers:
 
 
 def _warm_temperature(case: Case, cold_rise: float) -> float:
-    """Mean of the film from r = cold_rise mu(T_s + r/2)/mu(T_s), r by bisection [K]."""
+    """Return the mean of the film from r = cold_rise mu(T_s + r/2)/mu(T_s), r by bisection [K]."""
     supply, oil = case.thermal.supply_temperature, case.lubricant
     cold = float(oil.viscosity(supply))
     low, high = 0.0, cold_rise
@@ -149,7 +149,7 @@ def regime_warnings(
     mean_viscosity: float | None = None,
     heat_balance: HeatBalance | None = None,
 ) -> tuple[str, ...]:
-    """Sentences on where the model leaves its range; none if it does not.
+    """Return the sentences on where the model leaves its range; none if it does not.
 
     speed : [rad/s]
     min_film_thickness : Of the solution [m]; held against the bearing's roughness.
@@ -215,7 +215,7 @@ def _temperature_warnings(case: Case, max_temperature: float | None) -> list[str
 
 
 def _held_walls(case: Case, max_temperature: float | None, heat: HeatBalance | None) -> list[str]:
-    """Walls that stay cold whatever they take, and take most of the heat."""
+    """Return the walls that stay cold whatever they take, and take most of the heat."""
     if heat is None or max_temperature is None or not heat.dissipation > 0.0:
         return []
     if not max_temperature - case.thermal.supply_temperature > _NOTICEABLE_HEATING:

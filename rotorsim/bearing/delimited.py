@@ -125,7 +125,7 @@ def read(path: str | Path) -> xr.Dataset:
 def cells(
     source: Path, is_header: Callable[[list[str]], bool], other_names: Mapping[str, str]
 ) -> tuple[list[_Line], str]:
-    """Lines of a CSV table from its header on, cut into cells, and what separates them."""
+    """Return lines of a CSV table from its header on, cut into cells, and what separates them."""
 
     def header(line: Sequence[str]) -> bool:
         return is_header([named(cell, other_names)[0] for cell in line])
@@ -138,7 +138,7 @@ def cells(
 
 
 def _text(source: Path) -> str:
-    """Text of a file that is one, and no other kind of file."""
+    """Return the text of a file that is one, and no other kind of file."""
     data = read_bytes(source, _MAX_BYTES, TableError)
     if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         try:
@@ -162,7 +162,7 @@ def _text(source: Path) -> str:
 def _lines(
     text: str, source: Path, header: Callable[[Sequence[str]], bool] | None = None
 ) -> tuple[list[_Line], str]:
-    """Lines that hold something and are no comments, and what separates their cells."""
+    """Return the lines that hold something and are no comments, and what separates their cells."""
     lines = text.splitlines()
     stated = re.match(r"sep=([,;|\t])$", lines[0].strip(" \"'")) if lines else None
     if stated:  # a line for spreadsheet programs
@@ -194,7 +194,7 @@ def _is_header(cells: Sequence[str]) -> bool:
 
 
 def _from_header(lines: list[_Line]) -> list[_Line]:
-    """Without the title lines that sheets begin with."""
+    """Leave out the title lines that sheets begin with."""
     for place, (_, cells) in enumerate(lines[:_TITLE_LINES]):
         if _is_header(cells):
             return lines[place:]
@@ -212,7 +212,7 @@ def named(cell: str, other_names: Mapping[str, str] = _OTHER_NAMES) -> tuple[str
 
 
 def _units_row(lines: list[_Line]) -> tuple[list[str] | None, list[_Line]]:
-    """Cells of the row of units, where there is one, and the rows below."""
+    """Return the cells of the row of units, where there is one, and the rows below."""
     if len(lines) < 2:
         return None, []
     names = [named(cell)[0] for cell in lines[0][1]]
@@ -228,7 +228,7 @@ def _units_row(lines: list[_Line]) -> tuple[list[str] | None, list[_Line]]:
 def _columns(
     header: list[str], units: list[str] | None, rows: list[_Line], source: Path
 ) -> tuple[list[_Column], list[str]]:
-    """Columns that count, and the names of those that are left out."""
+    """Return the columns that count, and the names of those that are left out."""
     columns: list[_Column] = []
     left_out: list[str] = []
     for place, cell in enumerate(header):
@@ -265,7 +265,7 @@ def _columns(
 
 
 def _factor(name: str, unit: str, cell: str, source: Path) -> float:
-    """SI value over the number in the file."""
+    """Return SI value over the number in the file."""
     kind = _KINDS[name]
     try:
         return parse_unit(unit, kind)[1]
@@ -312,7 +312,7 @@ def _decimal_comma(rows: list[_Line], columns: list[_Column], source: Path) -> b
 def _row(
     cells: list[str], columns: list[_Column], width: int, comma: bool, number: int, source: Path
 ) -> _Row:
-    """Values of a line [SI]; `width` is the number of cells in the header."""
+    """Return the values of a line [SI]; `width` is the number of cells in the header."""
     needed = max(column.place for column in columns) + 1
     more = any(cells[width:])
     if more or len(cells) < needed:
@@ -346,7 +346,7 @@ def _row(
 
 
 def _shown(cell: str) -> str:
-    """Cell for a message."""
+    """Return the cell for a message."""
     return cell if len(cell) <= _LONGEST_NAME else f"{cell[:_LONGEST_NAME]}..."
 
 
@@ -385,7 +385,7 @@ def _check_no_mass(text: str, key: str, source: Path) -> None:
 
 
 def _plain_text(cell: str) -> str:
-    """Text of a cell, without the apostrophe that `write` puts before a formula's sign."""
+    """Return text of a cell, without the apostrophe that `write` puts before a formula's sign."""
     return cell[1:] if cell[:1] == "'" and cell[1:].startswith(_FORMULA) else cell
 
 
@@ -440,7 +440,7 @@ def _ordered(
     speeds: list[float],
     source: Path,
 ) -> Iterator[_Row]:
-    """Rows model by model and clearance by clearance, all with the same speeds."""
+    """Return the rows model by model and clearance by clearance, all with the same speeds."""
     for model in models:
         for clearance in clearances:
             group = groups.get((model, clearance), [])
@@ -494,5 +494,5 @@ def write(dataset: xr.Dataset, path: str | Path) -> Path:
 
 
 def _cell(text: str) -> str:
-    """Text as a cell that no spreadsheet program takes for a formula."""
+    """Return the text as a cell that no spreadsheet program takes for a formula."""
     return f"'{text}" if text.startswith(_FORMULA) else text

@@ -48,7 +48,7 @@ COEFFICIENT_HEAD = ("rpm", "Kxx", "Kxy", "Kyx", "Kyy", "Cxx", "Cxy", "Cyx", "Cyy
 
 
 def point_title(point: OperatingPoint) -> str:
-    """``thd, c = 100 µm, 15000 rpm``, and the status where it is not converged."""
+    """Return ``thd, c = 100 µm, 15000 rpm``, and the status where it is not converged."""
     return curve_title(
         point.thermal_model,
         point.radial_clearance,
@@ -83,7 +83,7 @@ def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
 
 
 def point_status(point: OperatingPoint) -> str:
-    """Status in words."""
+    """Return the status in words."""
     return point.status.value.replace("_", " ")
 
 
@@ -128,7 +128,7 @@ def point_rows(point: OperatingPoint) -> list[Row]:
 
 
 def matrix_rows(point: OperatingPoint) -> list[tuple[str, str, str, str]]:
-    """K and C row by row: name, two values, unit."""
+    """Return K and C row by row: name, two values, unit."""
     return [
         (
             f"{letter} {axis}x {axis}y",
@@ -142,7 +142,7 @@ def matrix_rows(point: OperatingPoint) -> list[tuple[str, str, str, str]]:
 
 
 def point_html(point: OperatingPoint) -> str:
-    """Operating point for notebooks."""
+    """Return the operating point for notebooks."""
     return result_html(
         f"{point_title(point)}" + (": converged" if point.converged else ""),
         facts_html(point_rows(point)),

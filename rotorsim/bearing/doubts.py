@@ -43,7 +43,7 @@ def doubts(table: CoefficientTable) -> list[str]:
 
 
 def _signs(stiffness: Array, damping: Array) -> list[str]:
-    """Direct coefficients below zero at every speed."""
+    """Return the direct coefficients below zero at every speed."""
     below = {
         name: (direct < 0.0).all(axis=0)
         for name, direct in (
@@ -65,7 +65,7 @@ def _signs(stiffness: Array, damping: Array) -> list[str]:
 
 
 def _axes(stiffness: Array) -> list[str]:
-    """Cross stiffness that drives the journal against the rotation at every speed."""
+    """Return the cross stiffness that drives the journal against the rotation at every speed."""
     drive = stiffness[:, 0, 1] - stiffness[:, 1, 0]
     if not np.all(drive < -_NOTICEABLE * np.linalg.norm(stiffness, axis=(1, 2))):
         return []
@@ -77,7 +77,7 @@ def _axes(stiffness: Array) -> list[str]:
 
 
 def _units(stiffness: Array, damping: Array, speed: Array, table: CoefficientTable) -> list[str]:
-    """Quantities that are far from those of any film of oil at every speed."""
+    """Return the quantities that are far from those of any film of oil at every speed."""
     thresholds = rigid_thresholds(stiffness, damping, speed)
     found = [
         ("whirl frequency ratio", thresholds.whirl_frequency_ratio, _PLAUSIBLE_WHIRL),

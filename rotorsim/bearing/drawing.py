@@ -51,7 +51,7 @@ class DrawingNumbers:
 
 
 def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbers:
-    """Numbers of a case's drawing.
+    """Return the numbers of a case's drawing.
 
     rotor_mass : Per bearing [kg].
 
@@ -82,7 +82,7 @@ def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbe
 
 
 def drawing_warnings(case: Case, rotor_mass: float | None = None) -> tuple[str, ...]:
-    """Sentences on what is unlike bearings that run; none if nothing is.
+    """Return the sentences on what is unlike bearings that run; none if nothing is.
 
     rotor_mass : Per bearing [kg].
     """
@@ -94,7 +94,7 @@ def drawing_warnings(case: Case, rotor_mass: float | None = None) -> tuple[str, 
 
 
 def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
-    """Sentences on what heating is estimated to do; none for an isothermal case.
+    """Return the sentences on what heating is estimated to do; none for an isothermal case.
 
     speed : [rad/s]
     """

@@ -189,7 +189,7 @@ class FilmDynamics:
         return sorted(found)
 
     def _threshold_misfits(self, ratios: Array) -> Array:
-        """`_threshold_misfit` of many ratios."""
+        """Return `_threshold_misfit` of many ratios."""
         if self.stored_oil is not None or self.mass is None:
             return np.array([self._threshold_misfit(float(ratio)) for ratio in ratios])
         frequency = (ratios * self.speed)[:, None, None]
@@ -198,7 +198,7 @@ class FilmDynamics:
         return threshold_misfit(reduced.real, reduced.imag / frequency, frequency[:, 0, 0])
 
     def _threshold_misfit(self, ratio: float) -> float:
-        """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold."""
+        """Return det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold."""
         return float(threshold_misfit(*self.coefficients(ratio), np.asarray(ratio * self.speed)))
 
 
@@ -267,7 +267,7 @@ def full_coefficients(dynamics: FilmDynamics, frequency_ratio: float | None) -> 
 def _moving(
     bearing: Bearing, unloaded: Collection[int], rotations: bool
 ) -> tuple[tuple[str, ...], list[int]]:
-    """Names and places of the displacements: the journal's, then those of loaded pads.
+    """Return the names and places of the displacements: the journal's, then those of loaded pads.
 
     `linearize` gives the journal's rotations last, with the pitches that go with them.
     """
@@ -284,7 +284,7 @@ def _moving(
 
 
 def _pivot_stiffness(bearing: Bearing, displacement: Array) -> Array:
-    """Stiffness of the pads' pivots at their deflections, (q, q)."""
+    """Return the stiffness of the pads' pivots at their deflections, (q, q)."""
     stiffness = np.zeros(displacement.size)
     for pad, unknowns in zip(bearing.pads, pad_unknowns(bearing)[1], strict=True):
         if (place := unknowns.pivot) is not None:
@@ -297,7 +297,7 @@ def _inertia(bearing: Bearing, number: int) -> PadInertia:
 
 
 def pad_mass(bearing: Bearing) -> Array:
-    """Mass matrix of the pads over journal and pads, (q, q) [kg, kg m, kg m2]."""
+    """Return the mass matrix of the pads over journal and pads, (q, q) [kg, kg m, kg m2]."""
     names, places = pad_unknowns(bearing)
     mass = np.zeros((len(names), len(names)))
     for number, unknowns in enumerate(places):
@@ -314,7 +314,7 @@ def pad_mass(bearing: Bearing) -> Array:
 
 
 def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
-    """Finite eigenvalues [1/s] of a rigid rotor of `mass` per bearing [kg] and the pads.
+    """Return the finite eigenvalues [1/s] of a rigid rotor of `mass` per bearing [kg] and the pads.
 
     Without oil stored in the film. Massless unknowns leave infinite eigenvalues, which are dropped.
     """

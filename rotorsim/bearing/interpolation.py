@@ -47,7 +47,7 @@ class Coefficients:
             raise InputError("must be 0 or more (rad/s)", key="speed", value=self.speed)
 
     def dimensionless(self) -> Coefficients:
-        """K c/W and C c omega/W, with unit load, clearance and speed.
+        """Return K c/W and C c omega/W, with unit load, clearance and speed.
 
         Raises InputError: The load or the clearance is not known.
 
@@ -161,7 +161,7 @@ class CoefficientInterpolator:
     def __call__(
         self, speed: ArrayLike, gaps: Literal["raise", "nan"] = "raise"
     ) -> tuple[Array, Array]:
-        """Stiffness [N/m] and damping [N s/m] at `speed` [rad/s].
+        """Return the stiffness [N/m] and damping [N s/m] at `speed` [rad/s].
 
         gaps : {"raise", "nan"}. What to do next to points that did not converge.
         Returns stiffness, damping : speed.shape + (2, 2) arrays
@@ -249,7 +249,7 @@ def _between_good(usable: Booleans, below: Indices, known: Array, wanted: Array)
 def _dataset(
     dataset: xr.Dataset, dimension: str, values: Array, variables: dict[str, NDArray]
 ) -> xr.Dataset:
-    """`build`, with the coordinates that it does not know."""
+    """Return `build`, with the coordinates that it does not know."""
     dims = [str(d) for d in dataset["kxx"].dims]
     coordinates = {d: values if d == dimension else dataset[d].values for d in dims}
     return build(coordinates, variables, dict(dataset.attrs), dataset)

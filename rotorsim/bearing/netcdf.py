@@ -115,7 +115,7 @@ class _TooLarge(Exception):
 
 
 def _opened(data: bytes) -> xr.Dataset:
-    """Dataset of a file's contents, loaded if it is not too large."""
+    """Return the dataset of a file's contents, loaded if it is not too large."""
     import xarray as xr
 
     with (

@@ -331,7 +331,7 @@ _NESTED = ("heat_balance", "frequency_coefficients", "coefficients_full")
 
 
 def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
-    """Every scalar and coefficient of `point` (SI); the fields are left out.
+    """Return every scalar and coefficient of `point` (SI); the fields are left out.
 
     Returns: Keys are the attribute names of `OperatingPoint`; enumerations as their values, arrays
         as nested lists.
@@ -350,7 +350,7 @@ def point_to_dict(point: OperatingPoint) -> dict[str, Any]:
 
 
 def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
-    """Inverse of `point_to_dict`.
+    """Return the inverse of `point_to_dict`.
 
     Raises KeyError, TypeError, ValueError: If `record` was not made by `point_to_dict`.
     """
@@ -384,7 +384,7 @@ def point_from_dict(record: Mapping[str, Any]) -> OperatingPoint:
 def failed_point(
     case: Case, speed: float, message: str, status: SolveStatus = SolveStatus.FAILED
 ) -> OperatingPoint:
-    """Point without numbers: all that the case does not give is NaN."""
+    """Return the point without numbers: all that the case does not give is NaN."""
     nan, target = math.nan, case.target
     given = target.eccentricity_ratio if isinstance(target, EccentricityTarget) else nan
     return OperatingPoint(
@@ -434,7 +434,7 @@ def plain(value: Any) -> Any:
 
 
 def strict_json(value: Any, *, indent: int | None = 2) -> str:
-    """JSON text of `value`; NaN and infinities become null, dates text.
+    """Return the JSON text of `value`; NaN and infinities become null, dates text.
 
     Examples
     --------

@@ -108,7 +108,7 @@ def solved_film(
 def operating_point(
     case: Case, speed: float, solution: FilmSolution, *, keep_fields: bool = False
 ) -> OperatingPoint:
-    """Results of a solved film, turned into the load frame."""
+    """Return the results of a solved film, turned into the load frame."""
     problem, state = solution.problem, solution.state
     status, message = solution.status, solution.message
     following = None
@@ -230,7 +230,7 @@ def _within_pressure(max_pressure: float, case: Case) -> tuple[SolveStatus, str]
 
 
 def _min_film_thickness(solution: FilmSolution) -> float:
-    """Smallest film thickness [m], lands only."""
+    """Return the smallest film thickness [m], lands only."""
     bearing, state = solution.problem.bearing, solution.state
     if bearing.is_plain and bearing.is_symmetric:
         return bearing.radial_clearance - math.hypot(*state.displacement)
@@ -238,7 +238,7 @@ def _min_film_thickness(solution: FilmSolution) -> float:
 
 
 def _mean_preload(bearing: Bearing) -> float:
-    """Mean preload of pads or lobes; 0 for a plain bore."""
+    """Return the mean preload of pads or lobes; 0 for a plain bore."""
     preloads = [bearing.preload_of(pad) for pad in bearing.pads]
     preloads = preloads or [arc.preload for arc in bearing.arcs]
     return sum(preloads) / len(preloads) if preloads else 0.0
@@ -256,7 +256,7 @@ def _solved_flow(solution: FilmSolution) -> FilmFlow:
 
 
 def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float]:
-    """Highest and mean temperature of the film's oil [K]."""
+    """Return the highest and mean temperature of the film's oil [K]."""
     state, thermal = solution.state, solution.thermal
     if thermal is None:
         supply = solution.problem.thermal.supply_temperature
@@ -294,7 +294,7 @@ def _flow_regimes(solution: FilmSolution) -> dict[str, float]:
 
 
 def _turbulence(solution: FilmSolution) -> Array:
-    """Weight of turbulent against laminar flow, (n, m)."""
+    """Return the weight of turbulent against laminar flow, (n, m)."""
     turbulent = solution.state.layers.turbulent
     return np.zeros(solution.problem.mesh.shape) if turbulent is None else turbulent.weight
 
@@ -302,7 +302,7 @@ def _turbulence(solution: FilmSolution) -> Array:
 def _outlet_temperature(
     case: Case, flow: float, heat: HeatBalance | None, demand: Sequence[float]
 ) -> float | None:
-    """Mean temperature of the oil that leaves at both ends [K]; None where it is not known.
+    """Return mean temperature of the oil that leaves at both ends [K]; None where it is not known.
 
     With a given supply, of all oil that leaves the housing.
     All heat that the oil carries off leaves with the side flow only where the oil that comes round
@@ -325,7 +325,7 @@ def _outlet_temperature(
 
 
 def _without_tension(solution: FilmSolution) -> Array:
-    """Pressure [Pa] without what a few cells, kept full at the end, hold below ambient."""
+    """Return pressure [Pa] without what a few cells, kept full at the end, hold below ambient."""
     pressure = solution.state.solution.pressure
     if solution.problem.settings.cavitation is Cavitation.FULL_SOMMERFELD:
         return pressure
@@ -333,7 +333,7 @@ def _without_tension(solution: FilmSolution) -> Array:
 
 
 def _fields(solution: FilmSolution, fraction: Array) -> FilmFields:
-    """Fields over the whole length, angles in the load frame."""
+    """Return the fields over the whole length, angles in the load frame."""
     problem, state, thermal = solution.problem, solution.state, solution.thermal
     mesh, supply = problem.mesh, problem.thermal.supply_temperature
     layers = problem.settings.mesh.cross_film

@@ -333,7 +333,7 @@ def _listing(values: np.ndarray) -> str:
 
 
 def _position(values: np.ndarray, wanted: Any, name: str) -> int:
-    """Index of `wanted` among a coordinate's values."""
+    """Return the index of `wanted` among a coordinate's values."""
     if values.dtype.kind == "f":
         try:
             distance = np.abs(values - float(wanted))

@@ -51,7 +51,7 @@ _NAMES = ("x", "y", "theta_x", "theta_y")
 
 
 def _full_attributes(kind: str, i: str, j: str) -> tuple[str, str]:
-    """Unit and description of one entry of the full K or C."""
+    """Return the unit and description of one entry of the full K or C."""
     power = 1 + (i in _NAMES[2:]) + (j in _NAMES[2:])
     unit = {1: ("N m-1", "N s m-1"), 2: ("N", "N s"), 3: ("N m", "N m s")}[power][kind == "c"]
     words = "stiffness" if kind == "k" else "damping"
@@ -170,7 +170,7 @@ PAD_MATRICES = ("full_stiffness", "full_damping", "full_mass")
 
 
 def cf_attributes(name: str) -> dict[str, str]:
-    """``units`` and ``long_name`` of a table's variable."""
+    """Return ``units`` and ``long_name`` of a table's variable."""
     units, long_name = ATTRIBUTES[name]
     return {"units": units, "long_name": long_name}
 
@@ -247,7 +247,7 @@ def _with_pads(
 
 
 def common_unknowns(dataset: xr.Dataset) -> tuple[list[str], np.ndarray]:
-    """Names and K, C, M (3, ..., k, k) over journal and pads, of pads that all points load.
+    """Return names and K, C, M (3, ..., k, k) over journal and pads, of pads that all points load.
 
     Others are eliminated at the shaft's frequency; NaN where a point did not converge.
     """
@@ -302,7 +302,7 @@ def build(
     attributes: dict[str, Any],
     like: xr.Dataset | None = None,
 ) -> xr.Dataset:
-    """Dataset with CF attributes from coordinates (in order) and arrays over all of them.
+    """Return dataset with CF attributes from coordinates (in order) and arrays over all of them.
 
     Dimensions made by `stack` have the attributes that they have in `like`.
     """
@@ -362,7 +362,7 @@ def _is_journal_only(full: FullCoefficients | None) -> bool:
 
 
 def _full_row(point: OperatingPoint) -> np.ndarray:
-    """Full K and C, row by row; NaN where the point has none."""
+    """Return the full K and C, row by row; NaN where the point has none."""
     full = point.coefficients_full
     if full is None:
         return np.full(len(FULL_COEFFICIENTS), np.nan)
@@ -497,5 +497,5 @@ def without_standstill(dataset: xr.Dataset, source: str | Path) -> xr.Dataset:
 
 
 def scenario_digest(text: str) -> str:
-    """SHA-256 of a scenario's text (UTF-8), hexadecimal."""
+    """Return SHA-256 of a scenario's text (UTF-8), hexadecimal."""
     return hashlib.sha256(text.encode()).hexdigest()

@@ -172,7 +172,7 @@ class _March:
         return found, off / (self.tolerance * _MISFIT[known.size])
 
     def _heat_step(self, size: float) -> HeatStep:
-        """Backward difference over `size`: of second order where two moments are known."""
+        """Return backward difference over `size`: of second order where two moments are known."""
         last, state, frame = self.states[-1]
         if len(self.states) == 1:
             return HeatStep(self.storage, state, 1.0 / size, frame)

@@ -79,7 +79,7 @@ class _RouthCoefficients:
 
 
 def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> _RouthCoefficients:
-    """Routh-Hurwitz quantities of (..., 2, 2) stiffness [N/m] and damping [N s/m]."""
+    """Return the Routh-Hurwitz quantities of (..., 2, 2) stiffness [N/m] and damping [N s/m]."""
     k = np.asarray(stiffness, dtype=float)
     c = np.asarray(damping, dtype=float)
     for name, value in (("stiffness", k), ("damping", c)):
@@ -129,7 +129,7 @@ def rigid_thresholds(
     load: ArrayLike | None = None,
     radial_clearance: ArrayLike | None = None,
 ) -> WhirlThresholds:
-    """Critical mass and whirl frequency of a rigid rotor over whole arrays.
+    """Return the critical mass and whirl frequency of a rigid rotor over whole arrays.
 
     stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
     speed : Shaft speed [rad/s], broadcast against the leading dimensions.
@@ -189,7 +189,7 @@ def rigid_threshold(
     load: float | None = None,
     radial_clearance: float | None = None,
 ) -> WhirlThreshold:
-    """Critical mass and whirl frequency of a rigid rotor at one operating point.
+    """Return the critical mass and whirl frequency of a rigid rotor at one operating point.
 
     stiffness, damping : (2, 2) arrays [N/m], [N s/m]
     speed : [rad/s]
@@ -315,7 +315,7 @@ class FrequencyScan:
         return sorted(found)
 
     def _refined(self, ratio: float) -> float:
-        """Threshold's ratio without the interpolation."""
+        """Return threshold's ratio without the interpolation."""
 
         def off(value: float) -> float:
             return float(_misfit(self.law(1j * value * self.speed), value * self.speed))
@@ -334,7 +334,7 @@ def _misfit(film: ComplexArray, frequency: Array | float) -> Array:
 
 
 def threshold_misfit(stiffness: Array, damping: Array, frequency: Array) -> Array:
-    """det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold.
+    """Return det(K - K_e I) - nu^2 det C, relative to its size: zero at a threshold.
 
     Zero as well without stiffness and damping across: there is nothing to lose its balance.
     """

@@ -57,7 +57,7 @@ class AndersonMixer:
         return _mix(g, self._moves, weights)
 
     def _weights(self, right: Array) -> Array | None:
-        """Least-squares weights; None if the history is of no use."""
+        """Return the least-squares weights; None if the history is of no use."""
         gram = self._gram[: self._filled, : self._filled]
         scale = np.sqrt(np.diag(gram))
         if not np.all(scale > 0.0):

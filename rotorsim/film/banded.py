@@ -77,7 +77,7 @@ def factor_operator(operator: FilmOperator, active: Booleans) -> _FilmFactor:
 
 
 def column_order(interior: Booleans, active: Booleans) -> tuple[NDArray[np.int64], bool]:
-    """Columns in band order, and whether the ring had to be folded."""
+    """Return the columns in band order, and whether the ring had to be folded."""
     n = active.shape[0]
     used: Booleans = np.logical_or.reduce(active, axis=1)
     before = np.roll(active, 1, axis=0)

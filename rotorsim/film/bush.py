@@ -190,7 +190,7 @@ def _plane_modes(
     end_transfer: tuple[float, float],
     edge: float | None,
 ) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-    """Eigenvalues and vectors around and along."""
+    """Return the eigenvalues and vectors around and along."""
     lengths = np.frombuffer(dtheta)
     around = (
         _ring_modes(lengths) if edge is None else _open_modes(lengths, conductivity, (edge, edge))
@@ -214,7 +214,7 @@ def _ring_modes(dtheta: Array) -> tuple[Array, Array]:
 def _open_modes(
     dy: Array, conductivity: float, end_transfer: tuple[float, float]
 ) -> tuple[Array, Array]:
-    """Modes between two ends with convection."""
+    """Return the modes between two ends with convection."""
     m = dy.size
     matrix = np.zeros((m, m))
     for j in range(m - 1):

@@ -34,7 +34,7 @@ class PlainSearch:
     unreachable: bool = False
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
-        """Newton's next position, and how far the force is off, relative to the load."""
+        """Return Newton's next position, and how far the force is off, relative to the load."""
         eps = float(state.displacement[0]) / self.clearance
         xi = math.log(eps / (1.0 - eps))
         carried = float(np.hypot(*state.force))
@@ -208,13 +208,13 @@ class AttitudeSearch:
 
 
 def pressure_force(state: FilmState) -> float:
-    """Integral of |p| over the film [N]: the scale of forces where there is no load."""
+    """Return the integral of |p| over the film [N]: the scale of forces where there is no load."""
     pressures = np.abs(state.solution.pressure) * state.operator.area
     return state.problem.geometry.multiplicity * float(np.sum(pressures)) or 1.0
 
 
 def _newton_step(stiffness: Array, missing: Array, clearance: float) -> Array:
-    """Step that makes up for the `missing` force; dF = -K dx."""
+    """Return the step that makes up for the `missing` force; dF = -K dx."""
     try:
         step = np.linalg.solve(stiffness, missing)
     except np.linalg.LinAlgError:

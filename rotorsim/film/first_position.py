@@ -82,7 +82,7 @@ class ForceField:
 
     @classmethod
     def of(cls, case: Case, speed: float) -> ForceField:
-        """Force field of the case's bearing at `speed` [rad/s]."""
+        """Return the force field of the case's bearing at `speed` [rad/s]."""
         mesh, (around, along) = case.film.mesh, _COARSE
         coarse = replace(
             mesh,
@@ -298,13 +298,13 @@ class _TurningSearch:
         return Crossing((0.0, 0.0), max(off / self.scale, 1.0))
 
     def place(self, at: _Corner) -> _Position:
-        """Position [m] at a share of the way to the bore and an angle."""
+        """Return the position [m] at a share of the way to the bore and an angle."""
         share, angle = at
         size = share * self.field.reach(angle, self.least)
         return size * math.cos(angle), size * math.sin(angle)
 
     def unbalanced(self, at: _Corner) -> Array:
-        """Film force plus load [N]."""
+        """Return the film force plus load [N]."""
         if at not in self.known:
             if len(self.known) >= self.most:
                 raise NoFilmError("too many films for one search")
@@ -315,7 +315,7 @@ class _TurningSearch:
         return self.known[at]
 
     def turns(self, low: _Corner, high: _Corner) -> float:
-        """Turns of the unbalanced force round a region of shares and angles."""
+        """Return the turns of the unbalanced force round a region of shares and angles."""
         corners = [low, (high[0], low[1]), high, (low[0], high[1]), low]
         total = 0.0
         for start, end in pairwise(corners):
@@ -328,7 +328,7 @@ class _TurningSearch:
         return total / (2.0 * math.pi)
 
     def turn(self, here: _Corner, there: _Corner, splits: int) -> float:
-        """Turn of the unbalanced force from one point to another [rad]."""
+        """Return the turn of the unbalanced force from one point to another [rad]."""
         first, last = self.unbalanced(here), self.unbalanced(there)
         turn = math.atan2(first[0] * last[1] - first[1] * last[0], float(first @ last))
         if abs(turn) <= _TURN or splits == 0:

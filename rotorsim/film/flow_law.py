@@ -38,7 +38,7 @@ class FlowLaw(Protocol):
     def integrals(
         self, layers: LayerIntegrals, thickness: Array, surface_speed: float
     ) -> LayerIntegrals:
-        """Integrals of every column under this law.
+        """Return the integrals of every column under this law.
 
         layers : Of laminar flow with the same viscosity.
         thickness : (n, m) array. At cell centres [m].
@@ -147,7 +147,7 @@ def flow_law(case: Case) -> FlowLaw:
 
 
 def _transition_limits(case: Case) -> tuple[float, float]:
-    """Local Reynolds numbers at which the transition begins and ends.
+    """Return the local Reynolds numbers at which the transition begins and ends.
 
     With Taylor's criterion from 41.2 sqrt(R/c), where vortices begin, to twice that.
     """

@@ -90,7 +90,7 @@ class FilmGeometry:
     still: Booleans | None = None
 
     def thickness(self, q: Array) -> Array:
-        """Film thickness [m], (5, n, m), at the displacements `q`."""
+        """Return the film thickness [m], (5, n, m), at the displacements `q`."""
         h = self.rest.copy()
         for value, shape in zip(q, self.displacements.shapes, strict=True):
             if value != 0.0:
@@ -98,7 +98,7 @@ class FilmGeometry:
         return h
 
     def thinnest(self, thickness: Array) -> float:
-        """Smallest film thickness [m] on any face or centre of the lands."""
+        """Return the smallest film thickness [m] on any face or centre of the lands."""
         return float(np.min(thickness, where=self.land, initial=np.inf))
 
     def thinnest_at(self, q: Array) -> float:
@@ -121,7 +121,7 @@ class FilmGeometry:
         return replace(displacements, shapes=shapes)
 
     def forces(self, load: Array) -> Array:
-        """Generalised forces Q_q of the film, (q,), for the `load` p dA of each cell [N]."""
+        """Return generalised forces Q_q of the film, (q,), for the `load` p dA of each cell [N]."""
         return self.multiplicity * np.tensordot(self.displacements.shapes[:, CENTER], load, axes=2)
 
 
@@ -144,7 +144,7 @@ def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
 
 
 def _pocket_depth(bearing: Bearing, mesh: FilmMesh, theta: Array) -> Array:
-    """Depth of the pockets [m], (5, n, m), each cell's faces seen from inside it."""
+    """Return the depth of the pockets [m], (5, n, m), each cell's faces seen from inside it."""
     y, inward = mesh.y, 1e-9 * np.diff(mesh.y_faces)
     along = np.stack([y, y, y, mesh.y_faces[:-1] + inward, mesh.y_faces[1:] - inward])[:, None]
     depth = np.zeros((5, *mesh.shape))
@@ -168,7 +168,7 @@ class PadUnknowns:
 
 
 def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, ...]]:
-    """Names of all displacements of a film between pads, and the places of each pad's.
+    """Return the names of all displacements of a film between pads, and the places of each pad's.
 
     A flexible pivot adds its radial displacement, positive outwards. A ball lets the pad pitch,
     which a misaligned journal asks of it; aligned, pitch and the other displacements are apart.
@@ -192,7 +192,7 @@ def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, 
 def pad_face(
     bearing: Bearing, pad: Pad, theta: Array, tilt: float = 0.0, pivot: float = 0.0
 ) -> Array:
-    """Distance [m] of a pad's face from a centred journal's surface, at mid-plane.
+    """Return the distance [m] of a pad's face from a centred journal's surface, at mid-plane.
 
     tilt, pivot : In the direction of rotation [rad]; outwards [m].
     """
@@ -213,7 +213,7 @@ def _pads_at_rest(bearing: Bearing, mesh: FilmMesh) -> Array:
 
 
 def _journal_and_pads(bearing: Bearing, mesh: FilmMesh) -> Displacements:
-    """Displacements of the journal, and tilt, pivot displacement and pitch of the pads."""
+    """Return displacements of the journal, and tilt, pivot displacement and pitch of the pads."""
     names, places = pad_unknowns(bearing)
     journal = _translations(bearing, mesh)
     shapes = np.zeros((len(names), 5, *mesh.shape))
@@ -237,7 +237,7 @@ def _journal_and_pads(bearing: Bearing, mesh: FilmMesh) -> Displacements:
 
 
 def _translations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
-    """Displacements of the journal's centre along x and y [m]."""
+    """Return the displacements of the journal's centre along x and y [m]."""
     theta = _angles(mesh)
     around = np.stack([-np.cos(theta), -np.sin(theta)])[:, [0, 1, 2, 0, 0], :, None]
     shapes = np.ascontiguousarray(np.broadcast_to(around, (2, 5, *mesh.shape)))
@@ -245,7 +245,7 @@ def _translations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
 
 
 def rotations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
-    """Rotations of the journal about x and y [rad], through the bearing's mid-plane."""
+    """Return the rotations of the journal about x and y [rad], through the bearing's mid-plane."""
     theta = _angles(mesh)
     around = np.stack([np.sin(theta), -np.cos(theta)])[:, [0, 1, 2, 0, 0], :, None]
     y = mesh.y
@@ -262,7 +262,7 @@ def idle_pitches(bearing: Bearing) -> tuple[int, ...]:
 
 
 def turnings(bearing: Bearing, mesh: FilmMesh) -> Displacements:
-    """Rotations of the journal, and behind them the pitches of `idle_pitches`."""
+    """Return the rotations of the journal, and behind them the pitches of `idle_pitches`."""
     turned = rotations(bearing, mesh)
     y = mesh.y
     along = np.stack([y, y, y, mesh.y_faces[:-1], mesh.y_faces[1:]])[:, None, :]
@@ -277,7 +277,7 @@ def turnings(bearing: Bearing, mesh: FilmMesh) -> Displacements:
 
 
 def _angles(mesh: FilmMesh) -> Array:
-    """Angles [rad] of centres, west faces and east faces, (3, n)."""
+    """Return the angles [rad] of centres, west faces and east faces, (3, n)."""
     return np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])
 
 

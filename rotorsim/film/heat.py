@@ -245,13 +245,13 @@ class _Pool:
         return self.carry_over * self.given
 
     def mixed(self, hot: Array, fresh: Array, bath: Array | float = 0.0, at: float = 0.0) -> Array:
-        """Temperature of hot, fresh and housing oil together."""
+        """Return the temperature of hot, fresh and housing oil together."""
         heat = _heat(hot, self.hot_temperature) + _heat(fresh, self.supply_temperature)
         with np.errstate(divide="ignore", invalid="ignore"):
             return (heat + bath * at) / (hot + fresh + bath)
 
     def in_bath(self, fresh: Array, side: float, side_heat: float) -> Array:
-        """The same in a full housing, whose oil makes up what is missing.
+        """Return the same in a full housing, whose oil makes up what is missing.
 
         Into the housing go the films' side flow, what overflows, and what is not carried over.
         """
@@ -265,12 +265,12 @@ class _Pool:
 
 
 def _heat(flow: Array, temperature: Array) -> Array:
-    """Flow times temperature, of what flows at all."""
+    """Return the flow times temperature, of what flows at all."""
     return np.where(flow > 0.0, flow * np.where(flow > 0.0, temperature, 0.0), 0.0)
 
 
 def _side_flow(energy: EnergyProblem, temperature: Array) -> tuple[float, float]:
-    """Oil that leaves the films at their ends [m3/s], and that times its temperature."""
+    """Return the oil that leaves the films at their ends [m3/s], and that times its temperature."""
     total = heat = 0.0
     for face, outward in ((SOUTH, -1.0), (NORTH, 1.0)):
         open_ = ~energy.interior[face] & ~energy.fixed
@@ -302,7 +302,7 @@ def _in_layers(
 
 
 def entering_temperature(energy: EnergyProblem, inlet: Array, columns: Booleans) -> float:
-    """Mean temperature [K] of the oil that enters the first faces of `columns` (n,)."""
+    """Return the mean temperature [K] of the oil that enters the first faces of `columns` (n,)."""
     open_ = energy.flow.inlet & columns[:, None]
     flux = np.maximum(_layer_fluxes(energy, WEST, open_), 0.0)
     entering = inlet[WEST][open_].reshape(int(open_.sum()), -1)

@@ -71,7 +71,7 @@ class TurbulentIntegrals:
 
 
 def isoviscous_layers(shape: tuple[int, int], viscosity: float) -> LayerIntegrals:
-    """F_0 = 1/mu, G = 1/2, F_2 = 1/(12 mu): Reynolds' equation."""
+    """Return the F_0 = 1/mu, G = 1/2, F_2 = 1/(12 mu): Reynolds' equation."""
     empty = np.empty((*shape, 0))
     f2 = np.full(shape, 1.0 / (12.0 * viscosity))
     return LayerIntegrals(

@@ -51,7 +51,7 @@ class _Motions:
     factor: Factor
 
     def sources(self) -> Array:
-        """What unit displacements, then unit velocities, add to each cell's continuity."""
+        """Return what unit displacements, then unit velocities, add to each cell's continuity."""
         state, shapes = self.state, self.displacements.shapes
         squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
         squeezing = -shapes[:, CENTER] * squeezed
@@ -59,7 +59,7 @@ class _Motions:
         return np.concatenate([_displacement_sources(state, shapes), squeezing])
 
     def reaction(self, right: Array, factor: Factor | None = None) -> NDArray[Any]:
-        """-dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
+        """Return -dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
         state, factor = self.state, factor or self.factor
         loaded = state.solution.full | _filled(factor)
         perturbed = np.where(loaded, factor.solve(right), 0.0) * state.operator.area
@@ -69,7 +69,7 @@ class _Motions:
 
 
 def _filled(factor: Factor) -> Booleans:
-    """Cells of recesses whose pressure the factor solves for, (n, m) or ()."""
+    """Return the cells of recesses whose pressure the factor solves for, (n, m) or ()."""
     return factor.filled if isinstance(factor, BorderedFactor) else np.zeros((), dtype=bool)
 
 
@@ -170,7 +170,7 @@ def _displacement_sources(state: FilmState, shapes: Array) -> Array:
 
 
 def _add_step_sources(state: FilmState, steps: StepFaces, shapes: Array, sources: Array) -> None:
-    """What displacements change at steps, where either side has its own film thickness."""
+    """Return what displacements change at steps, where either side has its own film thickness."""
     layers, along, pressure = state.layers, steps.at[0] < 2, state.solution.raw
     share, changes = steps.share, []
     for place in (steps.at, steps.beyond):

@@ -18,7 +18,7 @@ _DEFAULT_END_LAND = 0.01
 
 
 def friction_force(state: FilmState, fraction: Array) -> float:
-    """Friction on the shaft [N]: tau = h p' (1 - G) + U/(h F_0) on the journal's surface.
+    """Return friction on the shaft [N]: tau = h p' (1 - G) + U/(h F_0) on the journal's surface.
 
     With ``liquid`` friction and an isothermal or thermal film, force times U is the power that the
     film dissipates, to rounding.
@@ -60,7 +60,7 @@ def journal_moment(state: FilmState) -> Array:
 
 
 def side_flow(state: FilmState) -> float:
-    """Oil out of both ends of the film and of its grooves [m3/s]."""
+    """Return the oil out of both ends of the film and of its grooves [m3/s]."""
     conductance, mesh = state.operator.conductance, state.problem.mesh
     pressure = state.solution.pressure
     film = ~state.operator.fixed
@@ -71,7 +71,7 @@ def side_flow(state: FilmState) -> float:
 
 
 def _end_leakage(state: FilmState) -> Array:
-    """Oil that leaks out of both ends of each groove whose ends are not sealed [m3/s]."""
+    """Return oil that leaks out of both ends of each groove whose ends are not sealed [m3/s]."""
     problem = state.problem
     bearing, mesh = problem.bearing, problem.mesh
     leakage = np.zeros(len(bearing.grooves))
@@ -114,7 +114,7 @@ def supply_flow(state: FilmState, flow: FilmFlow) -> Array:
 
 
 def groove_pressures(state: FilmState) -> tuple[float, ...]:
-    """Pressure in each groove [Pa], gauge."""
+    """Return the pressure in each groove [Pa], gauge."""
     supply, pressure = state.problem.mesh.supply, state.solution.pressure
     numbers = range(len(state.problem.bearing.grooves))
     return tuple(float(np.max(pressure[supply == k], initial=0.0)) for k in numbers)
@@ -131,7 +131,7 @@ def _made_oil(state: FilmState, flow: FilmFlow) -> Array:
 
 
 def _next_groove(supply: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Number of the groove that each column's film meets first, (n,)."""
+    """Return the number of the groove that each column's film meets first, (n,)."""
     here = supply.max(axis=1)
     ahead = np.empty_like(here)
     number = here[here >= 0][0]
@@ -142,7 +142,7 @@ def _next_groove(supply: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def peak(field: Array, half: bool) -> float:
-    """Largest value of a cell field, refined by parabolas through its neighbours."""
+    """Return the largest value of a cell field, refined by parabolas through its neighbours."""
     if half:
         # symmetric about the mid-plane, half a cell before the first centre
         middle = np.maximum(field[:, 0] + (field[:, 0] - field[:, 1]) / 8.0, field[:, 0])

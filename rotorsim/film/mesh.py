@@ -90,7 +90,7 @@ class FilmMesh:
 
 
 def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, float]) -> FilmMesh:
-    """Mesh of `bearing` (in the film frame), graded for the journal at `position` [m]."""
+    """Return mesh of `bearing` (in the film frame), graded for the journal at `position` [m]."""
     size = settings.mesh
     slots_at_max = bearing.is_plain and settings.inception is Inception.MAX_FILM
     if bearing.pads:
@@ -121,7 +121,7 @@ def build_mesh(bearing: Bearing, settings: FilmSettings, position: tuple[float, 
 
 
 def _edges(bearing: Bearing) -> list[float]:
-    """Angles at which a groove or a lobe begins or ends [rad]; the grooves' first."""
+    """Return the angles at which a groove or a lobe begins or ends [rad]; the grooves' first."""
     edges = [edge for groove in bearing.grooves for edge in groove_edges(groove)]
     rows = (e for p in bearing.hollows if not p.is_ring for e in (p.start, p.end))
     edges += dict.fromkeys(rows)
@@ -129,7 +129,7 @@ def _edges(bearing: Bearing) -> list[float]:
 
 
 def _breakpoints(bearing: Bearing) -> tuple[float, list[float]]:
-    """First angle of the mesh and all angles in one turn from it where a face must lie."""
+    """Return first angle of the mesh and all angles in one turn from it where a face must lie."""
     edges = _edges(bearing)
     if not edges:
         return -math.pi, [-math.pi, math.pi]
@@ -147,7 +147,7 @@ def _breakpoints(bearing: Bearing) -> tuple[float, list[float]]:
 def _theta_faces(
     bearing: Bearing, position: tuple[float, float], start: float, breaks: list[float], count: int
 ) -> Array:
-    """Faces so that every break is one, cells shared out by the density of the mesh."""
+    """Return the faces so that every break is one, cells shared out by the density of the mesh."""
     stretches = len(breaks) - 1
     if count < 2 * stretches:
         raise InputError(
@@ -177,7 +177,7 @@ def _theta_faces(
 
 
 def _pad_faces(bearing: Bearing, count: int) -> Array:
-    """Faces of `count` cells over the pads, an even number each, and of two in every gap."""
+    """Return faces of `count` cells over the pads, an even number each, and of two in every gap."""
     pads = bearing.pads
     if count < 4 * len(pads):
         raise InputError(
@@ -197,7 +197,7 @@ def _pad_faces(bearing: Bearing, count: int) -> Array:
 
 
 def mid_thickness(bearing: Bearing, theta: Array, position: tuple[float, float]) -> Array:
-    """Film thickness at mid-plane [m]; in full-length grooves not below that of the lands.
+    """Return film thickness at mid-plane [m]; in full-length grooves not below that of the lands.
 
     A groove has no metal behind the film: the journal may stand deeper in its opening than it may
     anywhere else.
@@ -213,7 +213,7 @@ def mid_thickness(bearing: Bearing, theta: Array, position: tuple[float, float])
 
 
 def groove_edges(groove: Groove) -> tuple[float, float]:
-    """Angles at which a groove begins and ends [rad]."""
+    """Return the angles at which a groove begins and ends [rad]."""
     return groove.center - groove.extent / 2.0, groove.center + groove.extent / 2.0
 
 
@@ -227,7 +227,7 @@ def in_full_groove(bearing: Bearing, theta: Array) -> Booleans:
 
 
 def _film_weight(bearing: Bearing, breaks: list[float], shares: Array) -> Array:
-    """Shares in which full-length grooves, where nothing is solved, weigh little."""
+    """Return the shares in which full-length grooves, where nothing is solved, weigh little."""
     weights = shares.copy()
     for k in range(len(breaks) - 1):
         middle = 0.5 * (breaks[k] + breaks[k + 1])
@@ -238,7 +238,7 @@ def _film_weight(bearing: Bearing, breaks: list[float], shares: Array) -> Array:
 
 
 def _share_out(weights: Array, count: int) -> list[int]:
-    """Whole numbers of at least 2, in proportion to `weights`, that add up to `count`."""
+    """Return whole numbers of at least 2, in proportion to `weights`, that add up to `count`."""
     spare = count - 2 * weights.size
     exact = np.maximum(weights / weights.sum() * count - 2.0, 0.0)
     exact *= spare / exact.sum() if exact.sum() > 0.0 else 0.0
@@ -256,7 +256,7 @@ def _groove_at(bearing: Bearing, theta: float) -> int | None:
 
 
 def _axial_faces(bearing: Bearing, y_faces: Array) -> Array:
-    """As many axial faces, with one on every edge of a pocket or a groove."""
+    """Return as many axial faces, with one on every edge of a pocket or a groove."""
     first, last = float(y_faces[0]), float(y_faces[-1])
     edges = [edge for pocket in bearing.hollows for edge in pocket.reach(bearing.length)]
     edges += [s * g.length / 2.0 for g in bearing.grooves if g.length for s in (1.0, -1.0)]
@@ -304,7 +304,7 @@ def _supply_cells(
 
 
 def _joints(bearing: Bearing, theta_faces: Array) -> Booleans:
-    """Columns at whose first face a lobe or a groove begins or ends."""
+    """Return the columns at whose first face a lobe or a groove begins or ends."""
     first = theta_faces[:-1]
     joint = np.zeros(first.size, dtype=bool)
     for edge in _edges(bearing):
@@ -313,7 +313,7 @@ def _joints(bearing: Bearing, theta_faces: Array) -> Booleans:
 
 
 def _regions(supply: NDArray[np.int64], begins: Booleans) -> NDArray[np.int64]:
-    """Stretches of film between slots, joints and grooves; -1 in full-length grooves."""
+    """Return the stretches of film between slots, joints and grooves; -1 in full-length grooves."""
     blocked = np.asarray((supply >= 0).all(axis=1), dtype=bool)
     region = np.full(blocked.size, -1, dtype=np.int64)
     current = -1

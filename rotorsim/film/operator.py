@@ -119,7 +119,7 @@ class FaceTopology:
 
 
 def face_topology(mesh: FilmMesh, supply_pressure: Array) -> FaceTopology:
-    """Neighbours, distances and known pressures of every face.
+    """Return the neighbours, distances and known pressures of every face.
 
     supply_pressure : (grooves,) array [Pa]
     """
@@ -181,7 +181,7 @@ def face_topology(mesh: FilmMesh, supply_pressure: Array) -> FaceTopology:
 def film_operator(
     topology: FaceTopology, thickness: Array, layers: LayerIntegrals, surface_speed: float
 ) -> FilmOperator:
-    """Conductances and Couette flow for the film thickness and the viscosity integrals.
+    """Return the conductances and Couette flow for the film thickness and the viscosity integrals.
 
     thickness : (5, n, m) array. At each cell's centre and on its west, east, south and north face,
         seen from inside [m].
@@ -225,7 +225,7 @@ def film_operator(
 
 
 def _beyond(sides: Array) -> Array:
-    """What stands on the other side of each face, (4, n, m)."""
+    """Return what stands on the other side of each face, (4, n, m)."""
     return np.stack(
         [
             np.roll(sides[EAST], 1, axis=0),

@@ -32,7 +32,7 @@ class PadFrame:
     sine: Array
 
     def eccentricity(self, q: Array) -> tuple[float, float]:
-        """E_n and E_t at the mid-plane [m]."""
+        """Return the E_n and E_t at the mid-plane [m]."""
         cos, sin = math.cos(self.pad.pivot_angle), math.sin(self.pad.pivot_angle)
         along = q[0] * cos + q[1] * sin + self.preload * self.clearance
         if self.unknowns.pivot is not None:
@@ -41,11 +41,11 @@ class PadFrame:
         return float(along), float(across)
 
     def level_tilt(self, q: Array) -> float:
-        """Tilt [rad] at which E_t = 0."""
+        """Return the tilt [rad] at which E_t = 0."""
         return float(q[self.unknowns.tilt] - self.eccentricity(q)[1] / self.arm)
 
     def tilt_limits(self, thickness: Array, q: Array) -> tuple[float, float]:
-        """Tilts [rad] at which leading and trailing edge would touch the journal at `q`.
+        """Return the tilts [rad] at which leading and trailing edge would touch the journal at `q`.
 
         thickness : (5, columns, m) array [m]. Of the whole film there.
         """
@@ -66,14 +66,14 @@ class PadFrame:
         return min(max(wanted, low + 0.05 * (high - low)), high - 0.05 * (high - low))
 
     def _half_beyond(self, along: float) -> float:
-        """Angle from the pivot to the edge where the film would first converge [rad]."""
+        """Return the angle from the pivot to the edge where the film would first converge [rad]."""
         pad = self.pad
         angle = (1.0 - pad.offset if along <= 0.0 else pad.offset) * pad.arc
         return min(angle, 0.45 * math.pi)
 
 
 def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
-    """Frames of all pads of a film."""
+    """Return the frames of all pads of a film."""
     _, places = pad_unknowns(bearing)
     angles = np.stack([mesh.theta, mesh.theta_faces[:-1], mesh.theta_faces[1:]])[[0, 1, 2, 0, 0]]
     frames = []

@@ -89,7 +89,7 @@ class PadSearch:
         return displacements.scales / self.whole.bearing.radial_clearance
 
     def first_guess(self) -> Array:
-        """Displacements to begin with: the journal half-way to the pads, along the load.
+        """Return the displacements to begin with: the journal half-way to the pads, along the load.
 
         Raises NoFilmError: At the given eccentricity the journal touches a pad wherever it stands.
         """
@@ -173,7 +173,7 @@ class PadSearch:
     # --- what Newton's method needs -------------------------------------------------------------
 
     def missing(self, state: FilmState) -> Array:
-        """Generalised forces that are not in balance, (q,)."""
+        """Return the generalised forces that are not in balance, (q,)."""
         missing = state.force.copy()
         if not isinstance(self.target, EccentricityTarget):
             missing[0] += self.target.load
@@ -198,7 +198,7 @@ class PadSearch:
         return deflection, frame.pad.pivot.stiffness_at(deflection)
 
     def stiffness(self, state: FilmState) -> Array:
-        """Film and pivots, (q, q); an unloaded pad's unknowns stand alone."""
+        """Return the film and pivots, (q, q); an unloaded pad's unknowns stand alone."""
         stiffness = stiffness_matrix(state)
         for number, frame in enumerate(self.frames):
             if number in self.unloaded:
@@ -250,7 +250,7 @@ class PadSearch:
         return max(self.whole.mesh.multiplicity * pressed, 1e-300)
 
     def _turn(self, q: Array, missing: Array, stiffness: Array, slack: float) -> Array:
-        """Newton's step that keeps the journal at its distance from the centre."""
+        """Return Newton's step that keeps the journal at its distance from the centre."""
         size = float(np.hypot(q[0], q[1]))
         across = np.array([-q[1], q[0]]) / size
         reduced = np.column_stack([stiffness[1:, :2] @ across, stiffness[1:, 2:]])
@@ -262,7 +262,7 @@ class PadSearch:
         return step
 
     def without_film(self, state: FilmState) -> frozenset[int]:
-        """Numbers of the pads without pressure."""
+        """Return the numbers of the pads without pressure."""
         return frozenset(k for k, f in enumerate(self.frames) if not self._carries(state, f))
 
     def _carries(self, state: FilmState, frame: PadFrame) -> bool:

@@ -133,7 +133,7 @@ def film_problem(
 
 
 def _rupture(case: Case, bearing: Bearing, mesh: FilmMesh) -> RuptureCondition:
-    """Rupture condition of the case, with the recesses and the supply of the bearing."""
+    """Return the rupture condition of the case, with the recesses and the supply of the bearing."""
     condition = rupture_condition(case.film.cavitation, _oil_supply(bearing, mesh, case.thermal))
     if all(groove.restrictor is None for groove in bearing.grooves):
         return condition
@@ -142,7 +142,7 @@ def _rupture(case: Case, bearing: Bearing, mesh: FilmMesh) -> RuptureCondition:
 
 
 def _oil_supply(bearing: Bearing, mesh: FilmMesh, thermal: ThermalSettings) -> OilSupply | None:
-    """Oil for the leading edges of pads that nothing but it can fill."""
+    """Return the oil for the leading edges of pads that nothing but it can fill."""
     if bearing.supply_flow is None or bearing.feed is Feed.FLOODED:
         return None
     count = len(bearing.pads)

@@ -183,7 +183,7 @@ class _StoringShaft(_Wall):
         )  # fmt: skip
 
     def _heat_under(self, surface: float) -> float:
-        """Heat that it takes at that surface temperature, from the meshed part [W]."""
+        """Return the heat that it takes at that surface temperature, from the meshed part [W]."""
         return (surface - float(self.rest[-1])) / (float(self.per_watt[-1]) + self.skin)
 
     def profile(self, surface: float) -> Array:
@@ -216,7 +216,7 @@ def _operators(walls: Walls) -> tuple[BushOperator, ...]:
 
 
 def _faces(problem: FilmProblem, walls: Walls, frame: float) -> tuple[Array, ...]:
-    """Angles of the solids' cells in the load frame."""
+    """Return the angles of the solids' cells in the load frame."""
     if not _operators(walls):
         return ()
     theta = problem.mesh.theta_faces
@@ -227,7 +227,7 @@ def _faces(problem: FilmProblem, walls: Walls, frame: float) -> tuple[Array, ...
 
 
 def _fields(film: ThermalFilm, walls: Walls) -> tuple[Array, ...]:
-    """Temperatures of bush or pads under a film [K]."""
+    """Return the temperatures of bush or pads under a film [K]."""
     bore, ambient = film.heat.bush, film.state.problem.thermal.ambient_temperature
     columns = walls.pads or (np.ones(bore.shape[0], dtype=bool),)
     operators = _operators(walls)
@@ -252,7 +252,7 @@ def _carried(field: Array, old: Array, new: Array) -> Array:
 
 
 def _means(faces: Array, count: int) -> Array:
-    """Means of 1, cos k theta, sin k theta over each cell, (n, 2 count + 1)."""
+    """Return the means of 1, cos k theta, sin k theta over each cell, (n, 2 count + 1)."""
     columns, size = [np.ones(faces.size - 1)], np.diff(faces)
     for k in range(1, count + 1):
         columns.append(np.diff(np.sin(k * faces)) / (k * size))

@@ -113,7 +113,7 @@ class _Move(Protocol):
     unreachable: bool
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
-        """From the film's state to the next displacements and the relative force residual."""
+        """Return the next displacements from the film's state, and the relative force residual."""
         ...
 
     def allowed(self, old: Array, new: Array, /) -> Array:

@@ -104,7 +104,7 @@ def _sums() -> tuple[Array, Array]:
 
 
 def _integral(x: Array, n: int) -> Array:
-    """int_0^x t^n/(1 + eps(t)) dt, closed where tanh(t/d) = 1."""
+    """Return int_0^x t^n/(1 + eps(t)) dt, closed where tanh(t/d) = 1."""
     from scipy.interpolate import CubicHermiteSpline
 
     nodes, sums = _sums()
@@ -120,7 +120,7 @@ def _integral(x: Array, n: int) -> Array:
 
 @kernel
 def _weights(logarithm):
-    """Node below ln(s) and the weights of both nodes' values and derivatives."""
+    """Return the node below ln(s) and the weights of both nodes' values and derivatives."""
     place = min(max((logarithm - _FIRST) / _STEP, 0.0), _NODES - 1.000001)
     i = int(place)
     t = place - i
@@ -136,7 +136,7 @@ def _weights(logarithm):
 
 @kernel
 def _fluidity(table, viscosity, logarithms, logarithm):
-    """F_0 of one column, and the same of the tangent viscosity; `logarithm`: ln(s mu)."""
+    """Return F_0 of one column, and the same of the tangent viscosity; `logarithm`: ln(s mu)."""
     layers = viscosity.shape[0]
     f0, tangent = 0.0, 0.0
     for k in range(layers):
@@ -166,7 +166,7 @@ def _stress(table, viscosity, logarithms, h, density, speed, guess):
 
 @kernel
 def _turbulent_weight(reynolds, lower, upper):
-    """Weight of the turbulent fluidity, 0 to 1, and its rate d/d ln(Re)."""
+    """Return the weight of the turbulent fluidity, 0 to 1, and its rate d/d ln(Re)."""
     if upper <= 0.0:
         return 1.0, 0.0
     t = (reynolds - lower) / (upper - lower)
@@ -178,7 +178,7 @@ def _turbulent_weight(reynolds, lower, upper):
 
 @kernel
 def _ratio(reynolds, base, factor, exponent, added):
-    """k/base of a bulk law and its rate d ln/d ln(Re).
+    """Return k/base of a bulk law and its rate d ln/d ln(Re).
 
     `added`: base + factor Re^exponent; else the larger of both, with the corner rounded over a few
     per cent so that the coefficients do not jump.
@@ -402,7 +402,7 @@ _WEIGHTS = tuple(0.5 * w for w in np.polynomial.legendre.leggauss(8)[1].tolist()
 
 @kernel
 def _conduct(eddies, viscosity, logarithm, diffusion, conduction):
-    """Conduction between neighbouring layers and to the walls over the laminar one.
+    """Return the conduction between neighbouring layers and to the walls over the laminar one.
 
     The resistance int dz/(1 + mu c_p eps/(k Pr_t)) from centre to centre, and from each wall to the
     first centre.

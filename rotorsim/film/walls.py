@@ -281,7 +281,7 @@ class _ConductingPads(_Wall):
 def _conducted(
     operator: BushOperator, temperature: Array, flux: Array, conductance: float, ambient: float
 ) -> Array:
-    """Surface temperature [K] of a solid that answers the film's heat flux at the old one.
+    """Return surface temperature [K] of a solid that answers the film's heat flux at the old one.
 
     The film is taken to answer a change of the surface with a uniform conductance (a Robin
     condition): handing over the flux itself would not converge, since the surroundings take far

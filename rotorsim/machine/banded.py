@@ -26,7 +26,7 @@ class BandForm:
 
     @classmethod
     def of(cls, pattern: Booleans) -> BandForm:
-        """Band form of matrices that are zero where `pattern` (n, n) is False."""
+        """Return the band form of matrices that are zero where `pattern` (n, n) is False."""
         from scipy.sparse import csr_array
         from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -43,19 +43,19 @@ class BandForm:
         return 6 * self.width < self.place.size
 
     def entry(self, row: Indices, column: Indices) -> tuple[Indices, Indices]:
-        """Indices in a band of the entries of a matrix."""
+        """Return the indices in a band of the entries of a matrix."""
         i, j = self.place[row], self.place[column]
         return self.width + i - j, j
 
     def pack(self, matrix: NDArray[Any]) -> NDArray[Any]:
-        """Band of an (n, n) matrix."""
+        """Return the band of an (n, n) matrix."""
         row, column = np.nonzero(matrix)
         band = np.zeros((2 * self.width + 1, self.place.size), dtype=matrix.dtype)
         band[self.entry(row, column)] = matrix[row, column]
         return band
 
     def factors(self, band: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.intc]]:
-        """LU factors (3 width + 1, n) of LAPACK's ``gbtrf`` and its pivots."""
+        """Return LU factors (3 width + 1, n) of LAPACK's ``gbtrf`` and its pivots."""
         from scipy.linalg import get_lapack_funcs
 
         (factor,) = get_lapack_funcs(("gbtrf",), (band,))

@@ -103,7 +103,7 @@ class Modes:
         )
 
     def whirl_direction(self, x: int = 0, y: int = 1) -> Array:
-        """Sense of the orbit: 1 a forward circle, -1 a backward circle, 0 a straight line.
+        """Return sense of the orbit: 1 a forward circle, -1 a backward circle, 0 a straight line.
 
         x, y : The unknowns whose orbit is meant.
         """
@@ -138,13 +138,13 @@ class Modes:
         return words
 
     def _orbits(self) -> tuple[Array, Array]:
-        """Sense and size of the motion of every node, (n, k, n_nodes)."""
+        """Return the sense and size of the motion of every node, (n, k, n_nodes)."""
         sense = np.stack([self.whirl_direction(x, y) for x, y in self.planes], axis=-1)
         size = [np.hypot(*np.abs(self.shapes[..., [x, y]]).T).T for x, y in self.planes]
         return sense, np.stack(size, axis=-1)
 
     def columns(self, keep: ArrayLike) -> Modes:
-        """Some of the branches."""
+        """Return some of the branches."""
         index = np.asarray(keep)
         return replace(
             self,

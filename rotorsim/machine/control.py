@@ -31,7 +31,7 @@ _MOST_STATES = 12
 
 
 def receptance(system: control.StateSpace, frequency: ArrayLike) -> ComplexArray:
-    """Displacement per force, shape (n_output, n_input, n_frequency) [m/N].
+    """Return the displacement per force, shape (n_output, n_input, n_frequency) [m/N].
 
     system : From `state_space` and its like.
     frequency : (n,) array [rad/s]
@@ -44,7 +44,7 @@ def receptance(system: control.StateSpace, frequency: ArrayLike) -> ComplexArray
 def _step_response(
     system: control.StateSpace, force: float, entry: int = 0, duration: float | None = None
 ) -> tuple[Array, Array]:
-    """Times [s] and displacements (n_output, n) [m] after a force [N] sets in at one input."""
+    """Return times [s], displacements (n_output, n) [m] after a force [N] sets in at one input."""
     import control
 
     response = control.step_response(system, T=duration, input=entry, squeeze=False)
@@ -75,12 +75,12 @@ class StateFeedback:
         object.__setattr__(self, "gain", gain)
 
     def __call__(self, state: ArrayLike) -> Array:
-        """Force [N] (..., m) at state (..., n), about the operating point."""
+        """Return the force [N] (..., m) at state (..., n), about the operating point."""
         force = -np.asarray(state, dtype=float) @ self.gain.T
         return np.clip(force, -self.max_force, self.max_force)
 
     def closed_loop(self, system: control.StateSpace) -> control.StateSpace:
-        """Rotor with the unsaturated loop closed, same signals."""
+        """Return the rotor with the unsaturated loop closed, same signals."""
         import control
 
         _check_sizes(system, self.gain)
@@ -100,7 +100,7 @@ def design_lqr(
     velocity_scale: float = np.inf,
     max_force: float = np.inf,
 ) -> StateFeedback:
-    """Linear-quadratic regulator weighted by what counts as large (Bryson's rule).
+    """Return the linear-quadratic regulator weighted by what counts as large (Bryson's rule).
 
     system : Its inputs are the actuator's forces, its outputs the displacements to be kept small:
         the rigid rotor of `state_space`, or some nodes of another rotor, for example
@@ -144,7 +144,7 @@ def design_lqr(
 def _design_lqr_of_outputs(
     system: control.StateSpace, displacement: float, force: float, velocity: float, limit: float
 ) -> StateFeedback:
-    """Regulator of any rotor, weighted by its outputs and their rates."""
+    """Return the regulator of any rotor, weighted by its outputs and their rates."""
     import control
 
     a, b, c = (np.asarray(part) for part in (system.A, system.B, system.C))
@@ -184,7 +184,7 @@ def _check_sizes(system: control.StateSpace, gain: Array) -> None:
 def proportional_derivative(
     stiffness: float, damping: float, max_force: float = np.inf
 ) -> StateFeedback:
-    """Decentralised PD: added stiffness [N/m] and damping [N s/m] on both axes."""
+    """Return the decentralised PD: added stiffness [N/m] and damping [N s/m] on both axes."""
     return StateFeedback(np.hstack([stiffness * np.eye(2), damping * np.eye(2)]), max_force)
 
 
@@ -253,7 +253,7 @@ class LoopMargins:
 
 
 def loop_margins(system: control.StateSpace, feedback: StateFeedback, axis: int) -> LoopMargins:
-    """Gain, phase and modulus margins of the loop at one input, `axis` (0: x, 1: y)."""
+    """Return the gain, phase and modulus margins of the loop at one input, `axis` (0: x, 1: y)."""
     import control
 
     _check_sizes(system, feedback.gain)
@@ -305,7 +305,7 @@ class _FilmForce(Protocol):
         ...
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Force (fx, fy) [N] at x, y [m], vx, vy [m/s] and shaft speed [rad/s]."""
+        """Return the force (fx, fy) [N] at x, y [m], vx, vy [m/s] and shaft speed [rad/s]."""
         ...
 
 
@@ -342,13 +342,13 @@ class ActuatedForce:
         return f"{self.film.name} with actuator"
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Sum of both forces [N]."""
+        """Return the sum of both forces [N]."""
         fx, fy = self.film.force(x, y, vx, vy, speed)
         ax, ay = self.actuator_force(x, y, vx, vy)
         return fx + float(ax), fy + float(ay)
 
     def actuator_force(self, x: ArrayLike, y: ArrayLike, vx: ArrayLike, vy: ArrayLike) -> Array:
-        """Force of the actuator alone (..., 2) [N], along an orbit for example."""
+        """Return the force of the actuator alone (..., 2) [N], along an orbit for example."""
         x0, y0 = self.reference
         state = np.stack([np.subtract(x, x0), np.subtract(y, y0), vx, vy], axis=-1)
         return self.feedback(state)
@@ -360,7 +360,7 @@ def state_space(
     speed: float | None = None,
     name: str = "rotor",
 ) -> control.StateSpace:
-    """State space of a machine at one speed, or of a rigid rotor on one bearing's film.
+    """Return the state space of a machine at one speed, or of a rigid rotor on one bearing's film.
 
     Parameters
     ----------
@@ -413,7 +413,7 @@ def state_space(
 
 
 def _signal_name(node: str) -> str:
-    """Prefix of a node's signals, of letters, digits and underscores."""
+    """Return the prefix of a node's signals, of letters, digits and underscores."""
     return re.sub(r"\W+", "_", node) + "_" if node else ""
 
 
@@ -431,7 +431,7 @@ class Pole:
 
 
 def poles(system: control.StateSpace) -> list[Pole]:
-    """Poles, least stable first."""
+    """Return the poles, least stable first."""
     values = sorted(np.asarray(system.poles(), dtype=complex), key=lambda s: -s.real)
     return [
         Pole(complex(s), abs(s.imag), float(-s.real / abs(s)) if s != 0.0 else 0.0) for s in values

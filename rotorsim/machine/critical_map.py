@@ -32,7 +32,7 @@ class CriticalSpeedMap:
 def critical_speed_map(
     rotor: Rotor, nodes: Sequence[int], stiffness: ArrayLike, count: int = 4
 ) -> CriticalSpeedMap:
-    """Forward synchronous critical speeds over the stiffness of all supports.
+    """Return the forward synchronous critical speeds over the stiffness of all supports.
 
     rotor : Its damping and circulatory matrix are left out.
     nodes : Where a spring stands.
@@ -69,7 +69,7 @@ def critical_speed_map(
 
 
 def _forward_motions(rotor: Rotor) -> ComplexArray:
-    """Motions (size, n) of all unknowns when the rotor whirls forward in circles."""
+    """Return the motions (size, n) of all unknowns when the rotor whirls forward in circles."""
     columns: dict[tuple[int, bool], int] = {}
     entries = []
     for i, node in enumerate(rotor.nodes):
@@ -90,7 +90,7 @@ def _condensed(motions: ComplexArray, matrix: ArrayLike) -> ComplexArray:
 
 
 def principal_stiffness(machine: Machine, speeds: ArrayLike) -> dict[str, Array]:
-    """Principal synchronous stiffnesses (n, 2) [N/m] of each load-carrying support, by name.
+    """Return principal synchronous stiffnesses (n, 2) [N/m] of each load-carrying support, by name.
 
     speeds : (n,) array [rad/s]
 

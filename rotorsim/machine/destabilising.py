@@ -52,7 +52,7 @@ class DecrementCurve:
 
 
 def _destabilised(machine: Machine, stiffness: Mapping[int, float]) -> Machine:
-    """Machine with cross stiffnesses k_xy = -k_yx [N/m] at nodes."""
+    """Return the machine with cross stiffnesses k_xy = -k_yx [N/m] at nodes."""
     more = [Mount(node, cross_stiffness(q), f"Q at node {node}") for node, q in stiffness.items()]
     return replace(machine, supports=[*machine.mounts, *more])
 
@@ -119,7 +119,7 @@ def _critical_branch(branches: Modes, threshold: float | None) -> int:
 
 
 def _threshold(spectrum: _OverStiffness, first: float) -> float | None:
-    """Stiffness at which the least stable mode's growth rate passes 0."""
+    """Return the stiffness at which the least stable mode's growth rate passes 0."""
     from scipy.optimize import brentq
 
     def growth(stiffness: float) -> float:

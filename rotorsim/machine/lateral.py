@@ -71,7 +71,7 @@ def _judged(
 
 
 def required_margin(amplification: float, below: bool) -> float:
-    """Required separation margin, as a share of the speed it is measured from.
+    """Return the required separation margin, as a share of the speed it is measured from.
 
     amplification : Amplification factor AF.
     below : Whether the critical speed lies below the range of speeds, else above it.
@@ -83,7 +83,7 @@ def required_margin(amplification: float, below: bool) -> float:
 
 
 def separation_margin(speed: float, continuous: tuple[float, float]) -> float:
-    """Actual separation margin of a critical speed, 0 within the range [rad/s]."""
+    """Return the actual separation margin of a critical speed, 0 within the range [rad/s]."""
     low, high = continuous
     if speed < low:
         return (low - speed) / low
@@ -91,7 +91,7 @@ def separation_margin(speed: float, continuous: tuple[float, float]) -> float:
 
 
 def _margin_check(peak: Peak, place: str, continuous: tuple[float, float], edition: str) -> Check:
-    """Separation margin of one peak from the range of continuous speeds [rad/s]."""
+    """Return the separation margin of one peak from the range of continuous speeds [rad/s]."""
     factor = peak.amplification_factor
     low, high = continuous
     actual = separation_margin(peak.speed, continuous)
@@ -113,7 +113,7 @@ def _margin_check(peak: Peak, place: str, continuous: tuple[float, float], editi
 
 
 def _vibration_limit(speed: float) -> float:
-    """Peak-to-peak limit at probes, min(25.4, 25.4 sqrt(12000/N)) µm [m].
+    """Return the peak-to-peak limit at probes, min(25.4, 25.4 sqrt(12000/N)) µm [m].
 
     speed : Maximum continuous speed [rad/s].
     """
@@ -123,7 +123,7 @@ def _vibration_limit(speed: float) -> float:
 def _probe_check(
     response: ProbeResponse, case: str, continuous: tuple[float, float], edition: str
 ) -> Check:
-    """Largest peak-to-peak major axis of one probe within the range of speeds [rad/s]."""
+    """Return largest peak-to-peak major axis of one probe within the range of speeds [rad/s]."""
     value = _largest(response.speed, 2.0 * response.major_axis, continuous)
     return _judged(
         "vibration at the probe", f"{response.name}, {case}", value, "<=",
@@ -135,7 +135,7 @@ def _probe_check(
 def _scale_factor(
     responses: Sequence[ProbeResponse], continuous: tuple[float, float]
 ) -> float | None:
-    """Factor from the computed response to the limit at the probes, held in 0.5 to 6."""
+    """Return the factor from the computed response to the limit at the probes, held in 0.5 to 6."""
     values = [_largest(r.speed, 2.0 * r.major_axis, continuous) for r in responses]
     largest = max((v for v in values if v is not None), default=0.0)
     if largest <= 0.0:
@@ -147,7 +147,7 @@ def _clearance_checks(
     response: UnbalanceResponse, clearances: Sequence[Clearance], scale: float | None, case: str,
     top: float, edition: str,
 ) -> list[Check]:  # fmt: skip
-    """Peak-to-peak response at close clearances, scaled, up to a speed.
+    """Return the peak-to-peak response at close clearances, scaled, up to a speed.
 
     scale : From `_scale_factor`.
     case : Name of the unbalances.
@@ -171,7 +171,7 @@ def _clearance_checks(
 
 
 def _stability_checks(curve: DecrementCurve, edition: str) -> list[Check]:
-    """Level I stability: decrement at Q_A, and Q0 over Q_A."""
+    """Return the level I stability: decrement at Q_A, and Q0 over Q_A."""
     place = f"{curve.speed * RPM:.0f} rpm, Q_A = {curve.anticipated * 1e-6:.4g} MN/m"
     decrement = _judged(
         "decrement at the anticipated Q", place, curve.anticipated_decrement, ">=", 0.1, "",
@@ -195,7 +195,7 @@ def lateral_checks(
     top: float,
     edition: str,
 ) -> list[Check]:
-    """All checks of a machine.
+    """Return all checks of a machine.
 
     responses, whole : By the name of the unbalances: at the probes, and of all nodes.
     continuous : (float, float). Range of continuous speeds [rad/s].
@@ -262,14 +262,14 @@ class UnbalanceCase:
     planes: tuple[UnbalancePlane, ...]
 
     def applied(self, machine: Machine) -> Machine:
-        """Machine with these unbalances and no others."""
+        """Return the machine with these unbalances and no others."""
         bare = replace(machine.rotor, unbalance=np.zeros(len(machine.rotor.nodes), dtype=complex))
         planes = [(plane.at, plane.amount, plane.phase) for plane in self.planes]
         return replace(machine, rotor=with_unbalance(bare, planes))
 
 
 def _residual_unbalance(mass: float, speed: float) -> float:
-    """Residual unbalance U_r [kg m] of one plane: max(6350 W/N, 0.254 W) g mm.
+    """Return the residual unbalance U_r [kg m] of one plane: max(6350 W/N, 0.254 W) g mm.
 
     mass : Journal static load, or overhung mass, W [kg].
     speed : Maximum continuous speed [rad/s].
@@ -280,7 +280,7 @@ def _residual_unbalance(mass: float, speed: float) -> float:
 def unbalance_cases(
     machine: Machine, found: Modes, loads: Mapping[int, float], speed: float, factor: float
 ) -> tuple[UnbalanceCase, ...]:
-    """Unbalances for every mode that is critical within the speeds of `found`.
+    """Return the unbalances for every mode that is critical within the speeds of `found`.
 
     machine : With positions of its rotor's nodes.
     found : Of the machine over speed.
@@ -352,7 +352,7 @@ def _planes(
 
 
 def _antinodes(line: Array, within: Booleans) -> list[int]:
-    """Local maxima of the deflection's magnitude, ends included."""
+    """Return the local maxima of the deflection's magnitude, ends included."""
     index = np.flatnonzero(within)
     size = np.abs(line[index])
     before, after = np.append(-np.inf, size[:-1]), np.append(size[1:], -np.inf)

@@ -59,7 +59,7 @@ class Machine:
 
     @classmethod
     def on_identical(cls, rotor: Rotor, support: Support) -> Machine:
-        """Rotor with the same support at each of its `bearing_nodes`."""
+        """Return the rotor with the same support at each of its `bearing_nodes`."""
         if not isinstance(rotor, Rotor):
             return cls(rotor)
         return cls(rotor, [(node, support) for node in rotor.bearing_nodes])
@@ -117,7 +117,7 @@ class Machine:
         return any(mount.support.frequency_dependent for mount in self.mounts)
 
     def matrices(self, speed: ArrayLike) -> Matrices:
-        """Mass, damping and stiffness, each speed.shape + (n, n), gyroscopic terms included.
+        """Return mass, damping and stiffness, each speed.shape + (n, n), gyroscopic terms included.
 
         speed : array. [rad/s]
         Raises OutOfRangeError: A speed lies outside a support's table.
@@ -174,14 +174,14 @@ class Machine:
         return m, d, k
 
     def state_matrix(self, speed: ArrayLike) -> Array:
-        """State matrix on the displacements, then the velocities of the unknowns with mass.
+        """Return state matrix on the displacements, then the velocities of the unknowns with mass.
 
         NaN at a speed without coefficients. Raises as `matrices` and `first_order` do.
         """
         return first_order(*self.matrices(speed))[0]
 
     def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
-        """Force per displacement (n, n) of a motion exp(s t), frequency laws included."""
+        """Return force per displacement (n, n) of a motion exp(s t), frequency laws included."""
         rotor, n = self.rotor, self.rotor.size
         z = np.zeros((self.size, self.size), dtype=complex)
         z[:n, :n] = (

@@ -99,7 +99,7 @@ class StabilityMap:
 def stability_map(
     table: CoefficientTable, mass: ArrayLike, speed: ArrayLike | None = None
 ) -> StabilityMap:
-    """Growth rate and verdict over everything in the table times mass.
+    """Return the growth rate and verdict over everything in the table times mass.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _axis(values: ArrayLike, name: str) -> Array:
 
 
 def _coefficients(table: CoefficientTable, speeds: Array | None) -> tuple[Array, Array, Array]:
-    """K, C (..., n_speed, 2, 2) and load (..., n_speed); NaN where nothing converged."""
+    """Return K, C (..., n_speed, 2, 2) and load (..., n_speed); NaN where nothing converged."""
     shape = tuple(table.dataset.sizes[d] for d in table.choices)
     at = table.speeds if speeds is None else speeds
     values = np.empty((*shape, at.size, 9))

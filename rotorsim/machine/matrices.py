@@ -13,7 +13,7 @@ _SINGULAR = 1e12
 
 
 def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
-    """State matrices of the rigid rotor m x'' + C x' + K x = 0 (Dal Eq. 21).
+    """Return the state matrices of the rigid rotor m x'' + C x' + K x = 0 (Dal Eq. 21).
 
     stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
     mass : Per bearing [kg], broadcast against the leading dimensions.
@@ -34,12 +34,12 @@ def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> A
 
 
 def massive_unknowns(mass: Array) -> Indices:
-    """Indices of the unknowns with inertia, of (..., n, n) mass matrices."""
+    """Return the indices of the unknowns with inertia, of (..., n, n) mass matrices."""
     return np.flatnonzero(np.any(mass != 0.0, axis=-1).reshape(-1, mass.shape[-1]).any(axis=0))
 
 
 def first_order(mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> tuple[Array, Array]:
-    """State matrix and input matrix of M q'' + D q' + K q = f.
+    """Return the state matrix and input matrix of M q'' + D q' + K q = f.
 
     mass, damping, stiffness : (..., n, n) arrays. Unknowns without mass, whose rows of M are zero,
         must be damped.

@@ -23,7 +23,7 @@ _REACH = 3.0
 
 @on_one_blas_thread
 def modes(machine: Machine, speed: ArrayLike | None = None, count: int | None = None) -> Modes:
-    """Modes of a machine over speed, as continuous branches.
+    """Return the modes of a machine over speed, as continuous branches.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def machine_spectrum(machine: Machine, speeds: Array, count: int | None = None) 
 
 
 def known_speeds(machine: Machine) -> Array:
-    """Longest run of tabulated speeds [rad/s] at which all supports have coefficients."""
+    """Return longest run of tabulated speeds [rad/s] at which all supports have coefficients."""
     speeds = machine.speeds
     if not speeds.size:
         return speeds
@@ -87,7 +87,7 @@ def known_speeds(machine: Machine) -> Array:
 
 @on_one_blas_thread
 def eigenvalues_over_speed(machine: Machine, speeds: Array) -> tuple[ComplexArray, Array]:
-    """All eigenvalues and their accuracy (n, k) at speeds (n,), in no particular order.
+    """Return all eigenvalues and their accuracy (n, k) at speeds (n,), in no particular order.
 
     NaN where a support has no coefficients.
     """

@@ -34,7 +34,7 @@ class OutputFeedback:
     max_force: float = np.inf
 
     def closed_loop(self, system: control.StateSpace) -> tuple[Array, Array]:
-        """State matrix of machine and controller, and what f - u does to its states."""
+        """Return the state matrix of machine and controller, and what f - u does to its states."""
         a, b, c = (np.asarray(part, dtype=float) for part in (system.A, system.B, system.C))
         matrix = np.block([[a + b @ self.d @ c, b @ self.c], [self.b @ c, self.a]])
         return matrix, np.vstack([b, self.w])
@@ -45,7 +45,7 @@ def regulator(
     system: control.StateSpace, displacement_scale: float, force_scale: float, noise: float,
     max_force: float = np.inf,
 ) -> OutputFeedback:  # fmt: skip
-    """Linear-quadratic regulator with a Kalman filter that knows the sensors only.
+    """Return the linear-quadratic regulator with a Kalman filter that knows the sensors only.
 
     system : Small: forces at the actuators to displacements at the sensors.
     displacement_scale, force_scale : As bad as each other [m], [N].
@@ -69,7 +69,7 @@ def regulator(
 
 
 def _riccati(a: Array, b: Array, q: Array, r: Array, word: str) -> Array:
-    """Gain R^-1 B' X of the stabilising solution."""
+    """Return the gain R^-1 B' X of the stabilising solution."""
     from scipy.linalg import LinAlgError, solve_continuous_are
 
     try:
@@ -87,7 +87,7 @@ def _riccati(a: Array, b: Array, q: Array, r: Array, word: str) -> Array:
 def pd_of_sensors(
     system: control.StateSpace, corner: float, max_force: float = np.inf
 ) -> OutputFeedback:
-    """PD from each sensor to the actuator of the same number, of least growth rate.
+    """Return PD from each sensor to the actuator of the same number, of least growth rate.
 
     system : Small; as many forces as displacements.
     corner : Where the derivative ends: kp + kd s/(1 + s/corner) [rad/s].
@@ -140,7 +140,7 @@ def pd_of_sensors(
 
 
 def _slow(system: control.StateSpace) -> float:
-    """Frequency of the least stable mode, or of the slowest [rad/s]."""
+    """Return the frequency of the least stable mode, or of the slowest [rad/s]."""
     poles: Any = np.asarray(system.poles(), dtype=complex)
     frequency = abs(complex(poles[poles.real.argmax()]).imag)
     return frequency or float(np.abs(poles)[np.abs(poles) > 0.0].min())

@@ -91,7 +91,7 @@ def node_at(rotor: Rotor, at: float) -> int:
 
 
 def response_speeds(machine: Machine, low: float, high: float, found: Modes | None = None) -> Array:
-    """Speeds (n,) [rad/s] for a response: even ones, and more near critical speeds.
+    """Return the speeds (n,) [rad/s] for a response: even ones, and more near critical speeds.
 
     low, high : [rad/s]
     found : Of the machine over these speeds. Without them narrow peaks may lie between two speeds.
@@ -108,7 +108,7 @@ def response_speeds(machine: Machine, low: float, high: float, found: Modes | No
 def probe_responses(
     machine: Machine, probes: Sequence[Probe], speeds: Array
 ) -> tuple[ProbeResponse, ...]:
-    """Response to the rotor's unbalance at probes, with refined peaks.
+    """Return the response to the rotor's unbalance at probes, with refined peaks.
 
     probes : Where the rotor has a node.
     speeds : (n,) array. Ascending [rad/s], for example from `response_speeds`.
@@ -143,7 +143,7 @@ def _amplitude_along(machine: Machine, node: int, angle: float) -> Callable[[flo
 def _find_peaks(
     amplitude: Callable[[float], float], speeds: Array, values: Array
 ) -> tuple[Peak, ...]:
-    """Peaks of a response, each refined between its neighbours.
+    """Return the peaks of a response, each refined between its neighbours.
 
     amplitude : At any speed between the first and the last.
     speeds, values : (n,) arrays. Where it is known already, ascending; NaN where it is not known.

@@ -18,7 +18,7 @@ _BLOCK = 65536
 
 
 def eigenvalues(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> ComplexArray:
-    """Eigenvalues of m x'' + C x' + K x = 0 [rad/s], shape (..., 4), in no particular order.
+    """Return eigenvalues of m x'' + C x' + K x = 0 [rad/s], shape (..., 4), in no particular order.
 
     Parameters are those of `state_matrix`. Entries that are not finite give NaN.
     """
@@ -41,7 +41,7 @@ def _balanced(a: Array) -> Array:
 
 
 def _growth_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
-    """Largest real part of the four eigenvalues: positive where the rotor is unstable.
+    """Return the largest real part of the four eigenvalues: positive where the rotor is unstable.
 
     stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
     mass : [kg], broadcast against the leading dimensions.
@@ -75,7 +75,7 @@ def _growth_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> 
 
 
 def growth_rate_map(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
-    """Growth rates of every operating point with every mass, shape (..., n_mass) [1/s].
+    """Return the growth rates of every operating point with every mass, shape (..., n_mass) [1/s].
 
     stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
     mass : (n_mass,) array [kg]
@@ -122,7 +122,7 @@ _CHECK = 1e-10
 
 @compiled(inline="always", error_model="numpy")
 def _largest_resolvent_root(c2: float, c1: float, c0: float) -> float:
-    """Real root of y^3 + c2 y^2 + c1 y + c0 that is largest in magnitude, polished."""
+    """Return the real root of y^3 + c2 y^2 + c1 y + c0 that is largest in magnitude, polished."""
     shift = c2 / 3.0
     q = c2 * c2 / 9.0 - c1 / 3.0
     r = (2.0 * c2 * c2 * c2 - 9.0 * c2 * c1 + 27.0 * c0) / 54.0
@@ -144,7 +144,7 @@ def _largest_resolvent_root(c2: float, c1: float, c0: float) -> float:
 
 @compiled(inline="always", error_model="numpy")
 def _quadratic(p: complex, q: complex) -> tuple[complex, complex]:
-    """Roots of s^2 + p s + q, the larger first, without cancellation."""
+    """Return the roots of s^2 + p s + q, the larger first, without cancellation."""
     half = 0.5 * p
     root = cmath.sqrt(half * half - q)
     if half.real * root.real + half.imag * root.imag < 0.0:
@@ -227,7 +227,7 @@ def _real_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float, linear: float,
 ) -> float:  # fmt: skip
-    """Largest real part where the factors M + t -+ (l1 s + l0) are real."""
+    """Return the largest real part where the factors M + t -+ (l1 s + l0) are real."""
     p1, q1, p2, q2 = alpha - l1, beta + t - l0, alpha + l1, beta + t + l0
     if abs(q1) > abs(q2):
         p1, q1, p2, q2 = p2, q2, p1, q1
@@ -247,7 +247,7 @@ def _real_factors(
 def _largest_real_part(
     alpha: float, beta: float, n2: float, n1: float, n0: float, product: float, linear: float
 ) -> float:
-    """Largest real part of the zeros of (s^2 + alpha s + beta)^2 - (n2 s^2 + n1 s + n0).
+    """Return the largest real part of the zeros of (s^2 + alpha s + beta)^2 - (n2 s^2 + n1 s + n0).
 
     `product` and `linear` are the constant and the linear coefficient of the expanded quartic,
     known without cancellation. NaN where the roots are not to be trusted.
@@ -283,7 +283,7 @@ def _largest_real_part(
 
 @compiled(error_model="numpy")
 def _fill_row(k: np.ndarray, c: np.ndarray, mass: np.ndarray, rate: np.ndarray) -> None:
-    """Growth rates of one operating point, (4,) stiffness and damping, with every mass."""
+    """Return growth rates of one operating point, (4,) stiffness and damping, with every mass."""
     # The differences are formed before anything is scaled, so that nearly like modes stay exact.
     dc, dk = 0.5 * (c[0] - c[3]), 0.5 * (k[0] - k[3])
     n2 = dc * dc + c[1] * c[2]

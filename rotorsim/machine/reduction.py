@@ -111,27 +111,27 @@ def reduced(system: control.StateSpace, error: float = 1e-3, order: int | None =
 
 
 def _scales(a: Array) -> Array:
-    """Powers of two that bring rows and columns of a matrix to like sizes."""
+    """Return the powers of two that bring rows and columns of a matrix to like sizes."""
     from scipy.linalg import matrix_balance
 
     return np.asarray(matrix_balance(a, permute=False, separate=True)[1][0], dtype=float)
 
 
 def _root(gramian: Array) -> Array:
-    """L with L L' = a symmetric matrix, what rounding makes negative left out."""
+    """Return l with L L' = a symmetric matrix, what rounding makes negative left out."""
     values, vectors = np.linalg.eigh(0.5 * (gramian + gramian.T))
     return vectors * np.sqrt(np.maximum(values, 0.0))
 
 
 def _largest(responses: ComplexArray) -> float:
-    """Largest singular value over frequency."""
+    """Return the largest singular value over frequency."""
     if not min(responses.shape):
         return 0.0
     return float(np.linalg.svd(responses, compute_uv=False).max(initial=0.0))
 
 
 def probing_frequencies(values: ArrayLike) -> Array:
-    """Frequencies at and about eigenvalues, between and beyond them, ascending [rad/s]."""
+    """Return frequencies at and about eigenvalues, between and beyond them, ascending [rad/s]."""
     poles: Any = np.asarray(values, dtype=complex)
     poles = poles[poles.imag >= 0.0]
     about = poles.imag[:, None] + np.abs(poles.real)[:, None] * _ABOUT
@@ -144,7 +144,7 @@ def probing_frequencies(values: ArrayLike) -> Array:
 def response(
     a: ArrayLike, b: ArrayLike, c: ArrayLike, d: ArrayLike | None = None
 ) -> Callable[[ArrayLike], ComplexArray]:
-    """Frequency response (n, outputs, inputs) as a function of frequency (n,) [rad/s].
+    """Return the frequency response (n, outputs, inputs) as a function of frequency (n,) [rad/s].
 
     By the eigenvectors, or by one solution for each frequency where they are nearly parallel.
     """

@@ -30,23 +30,23 @@ class UnbalanceResponse:
     amplitude: ComplexArray
 
     def at(self, node: int | str) -> ComplexArray:
-        """Complex amplitudes (n, 2) of a node's x and y [m]."""
+        """Return the complex amplitudes (n, 2) of a node's x and y [m]."""
         first = int(self.machine.rotor.first_unknown[self.machine.rotor.node(node)])
         return self.amplitude[:, first : first + 2]
 
     def probe(self, node: int | str, angle: float) -> ComplexArray:
-        """Complex amplitude (n,) [m] along a direction `angle` [rad] from x towards y."""
+        """Return complex amplitude (n,) [m] along a direction `angle` [rad] from x towards y."""
         return self.at(node) @ np.array([np.cos(angle), np.sin(angle)])
 
     def major_axis(self, node: int | str) -> Array:
-        """Half the major axis (n,) of a node's elliptical orbit [m]."""
+        """Return half the major axis (n,) of a node's elliptical orbit [m]."""
         x, y = self.at(node).T
         return 0.5 * (np.abs(x + 1j * y) + np.abs(np.conj(x) + 1j * np.conj(y)))
 
 
 @on_one_blas_thread
 def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> UnbalanceResponse:
-    """Steady response to the rotor's unbalance.
+    """Return the steady response to the rotor's unbalance.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> Unba
 
 
 def _solve(machine: Machine, omega: Array, force: ComplexArray) -> ComplexArray:
-    """Amplitudes (n, size) at speeds (n,) under forces (n, size); NaN: not known."""
+    """Return the amplitudes (n, size) at speeds (n,) under forces (n, size); NaN: not known."""
     form = machine.band_form
     found = np.full(force.shape, np.nan, dtype=complex)
     if machine.frequency_dependent or not form.narrow:

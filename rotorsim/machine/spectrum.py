@@ -49,7 +49,7 @@ class Eigenmodes:
     shapes: ComplexArray
 
     def taken(self, order: Any) -> Eigenmodes:
-        """Modes of given indices."""
+        """Return the modes of given indices."""
         return Eigenmodes(self.values[order], self.accuracy[order], self.shapes[order])
 
     @property
@@ -63,7 +63,7 @@ class Spectrum(Protocol):
     """Modes at any parameter; None where the matrices are not known."""
 
     def __call__(self, parameter: float, /) -> Eigenmodes | None:
-        """Modes at one parameter."""
+        """Return the modes at one parameter."""
         ...
 
 
@@ -75,7 +75,7 @@ class MatrixSpectrum:
     unknowns: int | None = None
 
     def __call__(self, parameter: float, /) -> Eigenmodes | None:
-        """Modes at one parameter."""
+        """Return the modes at one parameter."""
         a = self.matrix(parameter)
         if not np.all(np.isfinite(a)):
             return None
@@ -95,7 +95,7 @@ class MachineSpectrum:
         return self.machine.size <= max(_DENSE, self.count)
 
     def __call__(self, speed: float, /) -> Eigenmodes | None:
-        """Modes at one speed [rad/s]."""
+        """Return the modes at one speed [rad/s]."""
         if self.complete:
             found = _every_mode(*self.machine.matrices(speed))
         else:
@@ -106,7 +106,7 @@ class MachineSpectrum:
 
 
 def _every_mode(mass: Array, damping: Array, stiffness: Array) -> Eigenmodes | None:
-    """All modes; unknowns without mass and damping follow the others statically."""
+    """Return all modes; unknowns without mass and damping follow the others statically."""
     if not (np.all(np.isfinite(stiffness)) and np.all(np.isfinite(damping))):
         return None
     acting = (mass != 0.0) | (damping != 0.0)
@@ -127,7 +127,7 @@ def _every_mode(mass: Array, damping: Array, stiffness: Array) -> Eigenmodes | N
 
 
 def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:
-    """All modes of one state matrix whose first states are `unknowns` displacements.
+    """Return all modes of one state matrix whose first states are `unknowns` displacements.
 
     After balancing, the error of an eigenvalue is some roundings of the matrix' norm over the
     cosine between its left and its right eigenvector (Golub & Van Loan, Matrix Computations,
@@ -222,11 +222,11 @@ class _Pencil:
     stiffness: Array
 
     def at(self, s: complex) -> NDArray[Any]:
-        """Band at a number s."""
+        """Return the band at a number s."""
         return self.stiffness + s * self.damping + s * s * self.mass
 
     def accuracy(self, values: ComplexArray, x: ComplexArray) -> Array:
-        """Bound of the error of eigenvalues with right eigenvectors x, in columns.
+        """Return the bound of the error of eigenvalues with right eigenvectors x, in columns.
 
         The right eigenvector stands for the left one where it is one (modes that nothing damps),
         and where the bound does not matter because the real part is large.
@@ -277,7 +277,7 @@ class _Krylov:
         return float(np.linalg.norm(self.hessenberg[: self.size, : self.size]))
 
     def ritz(self, size: int) -> tuple[ComplexArray, ComplexArray, Array]:
-        """Eigenvalues of the inverse, vectors over the basis, and relative residuals."""
+        """Return the eigenvalues of the inverse, vectors over the basis, and relative residuals."""
         from ._band_kernels import expand
 
         lu, pivots, near, far = self.operator
@@ -291,14 +291,14 @@ class _Krylov:
         return inverse.astype(complex), small, residual / np.abs(inverse)
 
     def vectors(self, small: ComplexArray) -> ComplexArray:
-        """Displacements of vectors over the basis."""
+        """Return the displacements of vectors over the basis."""
         basis = self.basis[: self.size, : self.n].T
         return basis @ small.real + 1j * (basis @ small.imag)
 
 
 @cache
 def _start(size: int) -> Array:
-    """First orthonormal vectors of a Krylov space."""
+    """Return the first orthonormal vectors of a Krylov space."""
     random = np.random.default_rng(0).standard_normal((size, _BLOCK))
     return np.asarray(np.linalg.qr(random)[0].T)
 

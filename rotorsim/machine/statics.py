@@ -45,12 +45,12 @@ class StaticEquilibrium:
 
 
 def weight(rotor: Rotor) -> Array:
-    """Forces (size,) [N] of gravity along x."""
+    """Return the forces (size,) [N] of gravity along x."""
     return np.asarray(rotor.mass @ rotor.translation((STANDARD_GRAVITY, 0.0)), dtype=float)
 
 
 def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Array:
-    """Loads (2, 2) [N] on two supports.
+    """Return the loads (2, 2) [N] on two supports.
 
     rotor : With positions of its nodes.
     force : (size,) array. Static forces and moments on the rotor's unknowns [N, N m].
@@ -67,7 +67,7 @@ def reactions_by_statics(rotor: Rotor, force: Array, nodes: Sequence[int]) -> Ar
 
 
 def _rigid_motions(rotor: Rotor) -> Array:
-    """Displacements (4, size) of the rotor's free motions: two translations, two rotations.
+    """Return displacements (4, size) of the rotor's free motions: two translations, two rotations.
 
     Raises InputError: The positions of the nodes are not known, or the rotor is not free without
         its supports.
@@ -106,7 +106,7 @@ def static_equilibrium(
     elevations: Array,
     start: Array | None = None,
 ) -> StaticEquilibrium:
-    """Equilibrium of a rotor on supports of any number.
+    """Return the equilibrium of a rotor on supports of any number.
 
     force : (size,) array. Static forces on its unknowns [N].
     nodes : Nodes of the supports that carry load.
@@ -139,7 +139,7 @@ def static_equilibrium(
     total = float(np.abs(force[held]).sum() + np.abs(force[free]).sum()) or 1.0
 
     def answer(loads: Array) -> tuple[Array, Array, Array]:
-        """Displacements in the housings, residual, Jacobian."""
+        """Return the displacements in the housings, residual, Jacobian."""
         moved = [law(one) for law, one in zip(laws, loads.reshape(-1, 2), strict=True)]
         journal = np.concatenate([one[0] for one in moved])
         softness = np.zeros((2 * count, 2 * count))

@@ -52,7 +52,7 @@ class Support(ABC):
 
     @abstractmethod
     def matrices(self, speed: ArrayLike) -> Matrices:
-        """Stiffness, damping and mass, each speed.shape + (m, m) or (m, m) (SI).
+        """Return the stiffness, damping and mass, each speed.shape + (m, m) or (m, m) (SI).
 
         NaN marks a speed without coefficients, next to a point that did not converge.
 
@@ -100,7 +100,7 @@ class ConstantSupport(Support):
 
 
 def cross_stiffness(value: float) -> ConstantSupport:
-    """Destabilising stiffness k_xy = -k_yx = `value` [N/m] of a seal or impeller.
+    """Return the destabilising stiffness k_xy = -k_yx = `value` [N/m] of a seal or impeller.
 
     It drives forward whirl where it is above zero, and carries no load.
     """
@@ -304,7 +304,7 @@ class Pedestal(Support):
         return result
 
     def matrices(self, speed: ArrayLike) -> Matrices:
-        """Matrices of the node's, the inner support's and the housing's unknowns."""
+        """Return the matrices of the node's, the inner support's and the housing's unknowns."""
         own = (self.stiffness, self.damping, self.mass)
         stiffness, damping, mass = (
             self._in_series(inner, np.asarray(part))
@@ -313,7 +313,7 @@ class Pedestal(Support):
         return stiffness, damping, mass
 
     def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
-        """Force per displacement, the inner support's own law included."""
+        """Return the force per displacement, the inner support's own law included."""
         own = np.asarray(self.stiffness) + s * np.asarray(self.damping)
         own = own + s * s * np.asarray(self.mass)
         return self._in_series(self.inner.dynamic_stiffness(s, speed), own)
@@ -346,18 +346,18 @@ class Turned(Support):
         return _turning(self.unknowns, self.angle)
 
     def matrices(self, speed: ArrayLike) -> Matrices:
-        """Matrices in the machine's frame."""
+        """Return the matrices in the machine's frame."""
         turn = self._turn
         k, c, m = (turn.T @ part @ turn for part in self.inner.matrices(speed))
         return k, c, m
 
     def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
-        """Force per displacement in the machine's frame."""
+        """Return the force per displacement in the machine's frame."""
         return self._turn.T @ self.inner.dynamic_stiffness(s, speed) @ self._turn
 
 
 def _turning(unknowns: Sequence[str], angle: float) -> Array:
-    """From unknowns to those of a frame turned by `angle` [rad] from x towards y."""
+    """Return the matrix from unknowns to those of a frame turned by `angle` [rad] from x towards y."""
     turn = np.eye(len(unknowns))
     c, s = np.cos(angle), np.sin(angle)
     for first, second in (("x", "y"), ("theta_x", "theta_y"), ("housing_x", "housing_y")):
@@ -369,7 +369,7 @@ def _turning(unknowns: Sequence[str], angle: float) -> Array:
 
 
 def _square(value: ArrayLike, size: int, name: str) -> Array:
-    """(size, size) matrix from one number, a diagonal or a matrix."""
+    """Return (size, size) matrix from one number, a diagonal or a matrix."""
     array = np.asarray(value, dtype=float)
     if array.ndim == 0:
         array = np.full(size, float(array))
@@ -384,7 +384,7 @@ def _square(value: ArrayLike, size: int, name: str) -> Array:
 
 
 def common_speeds(supports: Sequence[Support]) -> Array:
-    """Tabulated speeds (n,) [rad/s] of all supports, within the range that all of them know.
+    """Return tabulated speeds (n,) [rad/s] of all supports, within the range that all of them know.
 
     Raises InputError: Their tables have no speed in common.
     """

@@ -38,7 +38,7 @@ class ThresholdSpeed:
 
 @on_one_blas_thread
 def find_thresholds(spectrum: Spectrum, speeds: Sequence[float] | Array) -> list[ThresholdSpeed]:
-    """Speeds at which the least stable eigenvalue crosses the imaginary axis.
+    """Return the speeds at which the least stable eigenvalue crosses the imaginary axis.
 
     spectrum : Modes at a speed [rad/s]; None marks one without coefficients.
     speeds : Ascending; one crossing is found between two neighbours whose verdicts differ.
@@ -71,7 +71,7 @@ def find_thresholds(spectrum: Spectrum, speeds: Sequence[float] | Array) -> list
 def _threshold(
     spectrum: Spectrum, root: float, interval: tuple[float, float], rising: bool
 ) -> ThresholdSpeed:
-    """Threshold near `root`, which the band of undamped modes may have shifted a little."""
+    """Return threshold near `root`, which the band of undamped modes may have shifted a little."""
     from scipy.optimize import brentq
 
     side = 1.0 if rising else -1.0
@@ -96,14 +96,14 @@ def _threshold(
 
 
 def _leading(spectrum: Spectrum, speed: float) -> complex:
-    """Eigenvalue of largest real part of the damped modes; 0 without any, NaN if unknown."""
+    """Return eigenvalue of largest real part of the damped modes; 0 without any, NaN if unknown."""
     found = spectrum(speed)
     return complex(np.nan, np.nan) if found is None else found.leading
 
 
 @on_one_blas_thread
 def threshold_speeds(machine: Machine, subdivisions: int = 8) -> list[ThresholdSpeed]:
-    """Threshold speeds of a machine on its supports' interpolated tables.
+    """Return the threshold speeds of a machine on its supports' interpolated tables.
 
     subdivisions : Points looked at in every interval of the tables.
     """
@@ -112,7 +112,7 @@ def threshold_speeds(machine: Machine, subdivisions: int = 8) -> list[ThresholdS
 
 
 def subdivided(knots: Array, parts: int) -> Array:
-    """Every interval between ascending knots cut into `parts`."""
+    """Return every interval between ascending knots cut into `parts`."""
     if not knots.size:
         return knots
     cut = np.arange(parts) / parts
@@ -138,7 +138,7 @@ class CriticalSpeed:
 def critical_speeds(
     machine: Machine, found: Modes | None = None, order: float = 1.0
 ) -> list[CriticalSpeed]:
-    """Speeds at which a mode's damped frequency is `order` times the speed, ascending.
+    """Return the speeds at which a mode's damped frequency is `order` times the speed, ascending.
 
     found : Of this machine over speed, as dense as branches should be followed.
 
@@ -150,7 +150,7 @@ def critical_speeds(
 
 @lru_cache(maxsize=2)
 def _crossings(machine: Machine, found: Modes, order: float) -> tuple[CriticalSpeed, ...]:
-    """Critical speeds; several analyses of the same modes ask for them."""
+    """Return the critical speeds; several analyses of the same modes ask for them."""
     branches = found.oscillating()
     at = machine_spectrum(machine, branches.parameter)
     result = []
@@ -167,14 +167,14 @@ def _crossings(machine: Machine, found: Modes, order: float) -> tuple[CriticalSp
 
 
 def _refined_crossing(at: Spectrum, branches: Modes, i: int, k: int, order: float) -> Modes:
-    """Mode at the speed between points i and i + 1 where branch k crosses."""
+    """Return the mode at the speed between points i and i + 1 where branch k crosses."""
     from scipy.optimize import brentq
 
     low, high = (float(s) for s in branches.parameter[i : i + 2])
     ends = branches.eigenvalues[[i, i + 1], k], branches.shapes[[i, i + 1], k]
 
     def mode(speed: float) -> Eigenmodes:
-        """That mode between the two points: nearest in eigenvalue and shape."""
+        """Return that mode between the two points: nearest in eigenvalue and shape."""
         t = (speed - low) / (high - low)
         state = at(speed)
         assert state is not None  # between two speeds at which it is known

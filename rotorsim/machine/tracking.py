@@ -78,7 +78,7 @@ class _Follower:
     left: int
 
     def at(self, parameter: float) -> Eigenmodes:
-        """Modes at one parameter."""
+        """Return the modes at one parameter."""
         self.left -= 1
         found = self.spectrum(parameter)
         if found is None:
@@ -98,7 +98,7 @@ class _Follower:
         return end, first and second
 
     def _pair(self, old: Eigenmodes, new: Eigenmodes) -> tuple[Eigenmodes, bool]:
-        """New modes in the order of the old ones, and whether all that are wanted are alike.
+        """Return new modes in the order of the old ones, and whether all that are wanted are alike.
 
         A branch without a partner is lost: NaN.
         """
@@ -131,7 +131,7 @@ class _Follower:
         return Eigenmodes(values, accuracy, shapes), bool(alike.all())
 
     def _reach(self, modes: Eigenmodes) -> float:
-        """Modulus up to which modes must be followed smoothly."""
+        """Return the modulus up to which modes must be followed smoothly."""
         size = np.sort(np.abs(modes.values[np.isfinite(modes.values)]))
         if self.wanted is None or size.size <= self.wanted:
             return np.inf
@@ -139,7 +139,7 @@ class _Follower:
 
 
 def _likeness(old: Eigenmodes, i: int, shape: ComplexArray) -> float:
-    """MAC of a shape and the space of the modes that share eigenvalue i.
+    """Return MAC of a shape and the space of the modes that share eigenvalue i.
 
     The shapes of a multiple eigenvalue (a free rotor, an isotropic one at rest) are any basis.
     """

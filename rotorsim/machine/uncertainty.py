@@ -41,7 +41,7 @@ class Tolerance:
             raise InputError("must be uniform or normal", key="kind", value=self.kind)
 
     def from_unit(self, unit: ArrayLike) -> Array:
-        """Values at cumulative probabilities `unit`, 0 to 1."""
+        """Return the values at cumulative probabilities `unit`, 0 to 1."""
         u = np.asarray(unit, dtype=float)
         if self.kind == "uniform":
             return self.nominal + self.spread * (2.0 * u - 1.0)
@@ -65,7 +65,7 @@ class Propagation:
     failures: tuple[tuple[int, str], ...] = ()
 
     def quantile(self, output: str, probability: ArrayLike = (0.05, 0.5, 0.95)) -> Array:
-        """Quantiles of an output over the samples where it is defined."""
+        """Return the quantiles of an output over the samples where it is defined."""
         values = self._output(output)
         values = values[np.isfinite(values)]
         if not values.size:
@@ -73,7 +73,7 @@ class Propagation:
         return np.asarray(np.quantile(values, np.asarray(probability, dtype=float)))
 
     def probability_below(self, output: str, limit: float) -> tuple[float, float]:
-        """Probability that an output is below `limit`, and its standard error.
+        """Return the probability that an output is below `limit`, and its standard error.
 
         Samples where it is not defined count as not below, failed ones not at all: with
         ``critical_mass`` and the rotor's mass this is the probability of instability.
@@ -81,14 +81,14 @@ class Propagation:
         return self._share(self._output(output) < limit)
 
     def probability_above(self, output: str, limit: float) -> tuple[float, float]:
-        """Probability that an output is above `limit`, and its standard error.
+        """Return the probability that an output is above `limit`, and its standard error.
 
         As `probability_below`: of ``growth_rate`` above 0 it is the probability of instability.
         """
         return self._share(self._output(output) > limit)
 
     def _share(self, true: Booleans) -> tuple[float, float]:
-        """Share of the samples without a failure that are true, and its standard error."""
+        """Return share of the samples without a failure that are true, and its standard error."""
         keep = np.ones(true.size, dtype=bool)
         keep[[i for i, _ in self.failures]] = False
         n = int(keep.sum())
@@ -100,7 +100,7 @@ class Propagation:
         return p, math.sqrt(centre * (1.0 - centre) / (n + 4.0))
 
     def importance(self, output: str) -> dict[str, float]:
-        """Spearman's rank correlation of each input with an output, strongest first."""
+        """Return Spearman's rank correlation of each input with an output, strongest first."""
         from scipy.stats import rankdata
 
         values = self._output(output)
@@ -114,7 +114,7 @@ class Propagation:
         return dict(sorted(result.items(), key=lambda item: -abs(item[1])))
 
     def first_order_index(self, output: str) -> dict[str, float]:
-        """Share of an output's variance that each input explains alone, largest first.
+        """Return the share of an output's variance that each input explains alone, largest first.
 
         Estimates of first-order Sobol' indices Var(E[Y|X_i])/Var(Y). They add up to
         `explained_variance` about, not to 1: what is left are interactions of inputs and bends
@@ -132,7 +132,7 @@ class Propagation:
         return self._additive_fit(output)[1]
 
     def _additive_fit(self, output: str) -> tuple[dict[str, float], float]:
-        """First-order shares, largest first, and the adjusted R^2."""
+        """Return the first-order shares, largest first, and the adjusted R^2."""
         values = self._output(output)
         good = np.isfinite(values)
         y = values[good] - values[good].mean() if good.any() else values[good]
@@ -166,7 +166,7 @@ class Propagation:
 
 
 def _features(column: Array, powers: int) -> Array:
-    """Powers of the standardised input, without their means, (n, powers)."""
+    """Return the powers of the standardised input, without their means, (n, powers)."""
     z = column - column.mean()
     z = z / (z.std() or 1.0)
     x = z[:, None] ** np.arange(1, powers + 1)

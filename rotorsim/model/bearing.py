@@ -32,7 +32,7 @@ from .restrictors import AnyRestrictor, Pump
 
 
 def angle_between(theta: ArrayLike, other: float) -> Array:
-    """Angle from `other` to `theta`, the short way round: -pi to pi [rad]."""
+    """Return the angle from `other` to `theta`, the short way round: -pi to pi [rad]."""
     return (np.asarray(theta) - other + math.pi) % FULL_TURN - math.pi
 
 
@@ -166,12 +166,12 @@ class Pocket:
         return self.end - self.start > FULL_TURN - 1e-6
 
     def reach(self, bearing_length: float) -> tuple[float, float]:
-        """Axial edges [m], from the bearing's mid-plane."""
+        """Return the axial edges [m], from the bearing's mid-plane."""
         half = 0.5 * (bearing_length if self.length is None else self.length)
         return max(self.at - half, -0.5 * bearing_length), min(self.at + half, 0.5 * bearing_length)
 
     def deepening(self, theta: Array, y: Array, bearing_length: float) -> Array:
-        """Depth [m] at angles [rad] and axial places [m], 0 outside."""
+        """Return the depth [m] at angles [rad] and axial places [m], 0 outside."""
         along = (theta - self.start) % FULL_TURN / (self.end - self.start)
         half = 0.5 * (bearing_length if self.length is None else self.length)
         aside = np.abs(y - self.at) / half
@@ -212,7 +212,7 @@ class Texture:
         )
 
     def dimples(self, bearing_length: float) -> Iterator[Pocket]:
-        """Every dimple, in the middle of its own share of the area."""
+        """Return every dimple, in the middle of its own share of the area."""
         length = bearing_length if self.length is None else self.length
         pitch, row = (self.end - self.start) / self.around, length / self.along
         side = math.sqrt(self.area_share)
@@ -356,7 +356,7 @@ class Bearing:
         object.__setattr__(self, "arcs", self._profiled())
 
     def _profiled(self) -> tuple[Arc, ...]:
-        """Arcs as given, or of the profile."""
+        """Return the arcs as given, or of the profile."""
         if self.profile is None:
             for name in ("preload", "offset"):
                 _require(
@@ -399,11 +399,11 @@ class Bearing:
         )
 
     def clearance_of(self, pad: Pad) -> float:
-        """Machined clearance of a pad [m]."""
+        """Return the machined clearance of a pad [m]."""
         return self.radial_clearance if pad.clearance is None else pad.clearance
 
     def preload_of(self, pad: Pad) -> float:
-        """1 - (assembled clearance)/(machined clearance) of a pad."""
+        """Return 1 - (assembled clearance)/(machined clearance) of a pad."""
         if pad.assembled_clearance is None:
             return pad.preload
         return 1.0 - pad.assembled_clearance / self.clearance_of(pad)
@@ -414,7 +414,7 @@ class Bearing:
         return 2.0 * self.journal_radius
 
     def spans_length(self, groove: Groove) -> bool:
-        """Whether `groove` runs from end to end."""
+        """Return whether `groove` runs from end to end."""
         return groove.length is None or groove.length >= self.length * (1.0 - 1e-9)
 
     @property
@@ -435,7 +435,7 @@ class Bearing:
         return self.misalignment == (0.0, 0.0) and all(p.at == 0.0 for p in self.pockets)
 
     def turned(self, angle: float) -> Bearing:
-        """The same bearing with every feature moved ahead by `angle` [rad]."""
+        """Return the same bearing with every feature moved ahead by `angle` [rad]."""
         if angle == 0.0:
             return self
         cos, sin = math.cos(angle), math.sin(angle)

@@ -32,11 +32,11 @@ class ViscosityLaw(Protocol):
     """Dynamic viscosity as a function of temperature."""
 
     def viscosity(self, temperature: ArrayLike) -> Array:
-        """Dynamic viscosity [Pa s] at `temperature` [K]."""
+        """Return the dynamic viscosity [Pa s] at `temperature` [K]."""
         ...
 
     def parameters(self) -> tuple[float, float, float, float]:
-        """``(kind, a, b, c)`` for the compiled kernels; see `film.viscosity`."""
+        """Return ``(kind, a, b, c)`` for the compiled kernels; see `film.viscosity`."""
         ...
 
 
@@ -63,12 +63,12 @@ class ExponentialViscosity:
         check(self, "lubricant")
 
     def viscosity(self, temperature: ArrayLike) -> Array:
-        """Dynamic viscosity [Pa s] at `temperature` [K]."""
+        """Return the dynamic viscosity [Pa s] at `temperature` [K]."""
         difference = np.asarray(temperature, dtype=float) - self.reference_temperature
         return self.reference_viscosity * np.exp(-self.temperature_coefficient * difference)
 
     def parameters(self) -> tuple[float, float, float, float]:
-        """``(0, mu_0, T_0, beta)``."""
+        """Return ``(0, mu_0, T_0, beta)``."""
         return (
             0.0,
             self.reference_viscosity,
@@ -93,7 +93,7 @@ class WaltherViscosity:
     def from_points(
         cls, first: tuple[float, float], second: tuple[float, float], density: float
     ) -> WaltherViscosity:
-        """Through two points (temperature [K], dynamic viscosity [Pa s])."""
+        """Return the law through two points (temperature [K], dynamic viscosity [Pa s])."""
         (t1, mu1), (t2, mu2) = sorted((first, second))
         if not (t1 > 0 and t2 > t1 and mu1 > mu2 > 0 and density > 0):
             raise InputError(
@@ -123,13 +123,13 @@ class WaltherViscosity:
         )
 
     def viscosity(self, temperature: ArrayLike) -> Array:
-        """Dynamic viscosity [Pa s] at `temperature` [K]."""
+        """Return the dynamic viscosity [Pa s] at `temperature` [K]."""
         log_t = np.log10(np.asarray(temperature, dtype=float))
         nu = 10.0 ** (10.0 ** (self.intercept - self.slope * log_t)) - 0.7
         return nu * 1e-6 * self.density
 
     def parameters(self) -> tuple[float, float, float, float]:
-        """``(1, A, B, density)``."""
+        """Return ``(1, A, B, density)``."""
         return (1.0, self.intercept, self.slope, self.density)
 
 
@@ -199,7 +199,7 @@ class Lubricant:
         check(self, "lubricant")
 
     def viscosity(self, temperature: ArrayLike) -> Array:
-        """Dynamic viscosity [Pa s] at `temperature` [K]."""
+        """Return the dynamic viscosity [Pa s] at `temperature` [K]."""
         return self.law.viscosity(temperature)
 
     @property
@@ -216,7 +216,7 @@ class Viscosity(NamedTuple):
     is_kinematic: bool = False
 
     def dynamic(self, density: float) -> float:
-        """Dynamic viscosity [Pa s] of an oil of that density [kg/m3]."""
+        """Return the dynamic viscosity [Pa s] of an oil of that density [kg/m3]."""
         return self.value * density if self.is_kinematic else self.value
 
 

@@ -514,7 +514,7 @@ class MachineControl:
 
 
 def distinct_names(entries: Sequence[Any], word: str) -> tuple[str, ...]:
-    """Names of entries, those without one numbered: ``support 2``.
+    """Return the names of entries, those without one numbered: ``support 2``.
 
     Raises InputError: Two have the same name.
     """

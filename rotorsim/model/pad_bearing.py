@@ -139,7 +139,7 @@ def tilting_pad_bearing(
 
 
 def _listed(pads: PadSet, own: tuple[PadEntry, ...]) -> list[PadEntry]:
-    """Entries of the single pads, each with its pivot's angle."""
+    """Return the entries of the single pads, each with its pivot's angle."""
     if own and pads.count not in (None, len(own)):
         raise InputError(
             f"is {pads.count}, but there are {len(own)} [[bearing.pad]] tables; leave it out",
@@ -205,7 +205,7 @@ def _pad(place: int, entry: PadEntry, shared: PadSet) -> Pad:
 
 
 def farthest(bearing: Bearing) -> float:
-    """Largest distance from the centre that a journal between rigid pads can have [m]."""
+    """Return largest distance from the centre that a journal between rigid pads can have [m]."""
     best = 0.0
     for step in range(720):
         angle = step * math.pi / 360.0

@@ -349,7 +349,7 @@ class PadInertia:
 
 
 def pad_inertia(pad: Pad, radius: float, length: float) -> PadInertia:
-    """Inertia of `pad` around a journal of `radius` over a bearing's `length` [m]."""
+    """Return the inertia of `pad` around a journal of `radius` over a bearing's `length` [m]."""
     inner, outer = radius, radius + pad.thickness
     half = 0.5 * pad.arc
     ahead = (0.5 - pad.offset) * pad.arc  # from the pivot to the middle of the pad
@@ -389,7 +389,7 @@ def check_order(pads: Sequence[Pad]) -> None:
 
 
 def gaps(pads: Sequence[Pad]) -> list[tuple[float, float]]:
-    """Middle and extent [rad] of the opening before each pad."""
+    """Return the middle and extent [rad] of the opening before each pad."""
     result = []
     for number, pad in enumerate(pads):
         before = pads[number - 1].trailing_edge - (0.0 if number else FULL_TURN)

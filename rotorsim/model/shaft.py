@@ -176,7 +176,7 @@ class Disc:
         inner_diameter: float = 0.0,
         name: str = "",
     ) -> Disc:
-        """Disc of constant width [m, kg/m^3]."""
+        """Return the disc of constant width [m, kg/m^3]."""
         above_zero("rotor.disc", outer_diameter=outer_diameter, width=width, density=density)
         if not 0.0 <= inner_diameter < outer_diameter:
             raise InputError(

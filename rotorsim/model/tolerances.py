@@ -60,7 +60,7 @@ KINDS: dict[str, tuple[str | None, str]] = {
 def parse_spread(
     text: object, name: str, known: Mapping[str, tuple[str | None, str]] = KINDS
 ) -> Spread:
-    """Spread of the input `name`: text such as ``"5 um"`` or ``"5 %"``.
+    """Return the spread of the input `name`: text such as ``"5 um"`` or ``"5 %"``.
 
     A table ``{ spread = "5 um", distribution = "normal" }`` is read as well. `known` has the
     kind of quantity and an example by the inputs' names.

@@ -121,7 +121,7 @@ def once_per_turn(orbit: Orbit) -> Array | None:
 
 
 def _swing(orbit: Orbit) -> float:
-    """Root mean square distance from the mean position [m]."""
+    """Return the root mean square distance from the mean position [m]."""
     mean, z, weights = _middle(orbit)
     return float(np.sqrt(np.sum(weights * np.abs(z - mean) ** 2)))
 
@@ -149,7 +149,7 @@ def _period(orbit: Orbit, amplitude: float) -> int | None:
 
 
 def _rest_from(orbit: Orbit) -> int:
-    """First sample after the last one that is away from the end position."""
+    """Return the first sample after the last one that is away from the end position."""
     away = np.hypot(orbit.x - orbit.x[-1], orbit.y - orbit.y[-1])
     outside = np.flatnonzero(away > _AT_REST * orbit.radial_clearance)
     return int(outside[-1]) + 1 if outside.size else 0
@@ -232,7 +232,7 @@ def analyse(orbit: Orbit) -> OrbitAnalysis:
 
 
 def _initial_growth(orbit: Orbit) -> Growth | None:
-    """Growth of the small motions with which a run begins, at constant speed.
+    """Return the growth of the small motions with which a run begins, at constant speed.
 
     Linear coefficients know no large motions: the whole run counts. With a nonlinear film only the
     part counts that stays within `_SMALL_MOTION` of the equilibrium, and only without unbalance and
@@ -303,7 +303,7 @@ def _whirl_range(orbit: Orbit) -> _WhirlRange | None:
 
 
 def _subsynchronous(rows: Cascade) -> np.ndarray:
-    """Amplitudes of a cascade with all but the orders of whirl set to zero."""
+    """Return the amplitudes of a cascade with all but the orders of whirl set to zero."""
     low, high = _SUBSYNCHRONOUS
     return np.where((rows.order > low) & (rows.order < high), rows.amplitude, 0.0)
 
@@ -388,7 +388,7 @@ def _fit_modes(orbit: Orbit) -> Modes:
 
 
 def _shift_eigenvalues(signals: Array) -> ComplexArray:
-    """exp(lambda dt) of everything significant in the signals (s, n)."""
+    """Return exp(lambda dt) of everything significant in the signals (s, n)."""
     count = signals.shape[1]
     delays = min(_DELAYS, count // 3)
     starts = np.arange(0, count - delays, max((count - delays) // _COLUMNS, 1))
@@ -406,7 +406,7 @@ def _shift_eigenvalues(signals: Array) -> ComplexArray:
 
 
 def _amplitudes(poles: ComplexArray, signals: Array, step: float) -> tuple[ComplexArray, Array]:
-    """Least-squares amplitudes (k, 2) at the start, and the modes' energies (k,)."""
+    """Return the least-squares amplitudes (k, 2) at the start, and the modes' energies (k,)."""
     times = step * np.arange(signals.shape[1])
     # growing modes are fitted from their end, so that no column overflows
     origin = np.where(poles.real > 0.0, times[-1], 0.0)
@@ -421,7 +421,7 @@ def _amplitudes(poles: ComplexArray, signals: Array, step: float) -> tuple[Compl
 
 
 def growth_rate(orbit: Orbit) -> Growth | None:
-    """Growth rate and frequency of the strongest free motion; None where there is none.
+    """Return the growth rate and frequency of the strongest free motion; None where there is none.
 
     For small motions they equal the real and imaginary part of the eigenvalue nearest to
     instability, also beneath an unbalance response.

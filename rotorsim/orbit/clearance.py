@@ -17,7 +17,7 @@ _BLOCK = 4096
 
 
 def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
-    """Closed line of the journal's positions at which it touches the bush.
+    """Return the closed line of the journal's positions at which it touches the bush.
 
     bearing : In the frame of the line.
     count : Points on the line, the last one the first again.
@@ -56,13 +56,13 @@ def contact_boundary(bearing: Bearing, count: int = 361) -> Array:
 
 
 def _ends(bearing: Bearing) -> tuple[float, ...]:
-    """Axial places at which a journal touches first [m]."""
+    """Return the axial places at which a journal touches first [m]."""
     half = 0.5 * bearing.length
     return (0.0,) if bearing.is_symmetric else (-half, half)
 
 
 def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
-    """Smallest film thickness [m] on the lands with the journal's centre at x, y [m].
+    """Return the smallest film thickness [m] on the lands with the journal's centre at x, y [m].
 
     bearing : In the frame of x and y.
     x, y : (n,) arrays. At mid-plane [m].
@@ -97,7 +97,7 @@ def _pivots(bearing: Bearing) -> tuple[Array, Array]:
 
 
 def _land_angles(bearing: Bearing) -> Array:
-    """Angles [rad] that no full-length groove covers."""
+    """Return the angles [rad] that no full-length groove covers."""
     theta = 2.0 * math.pi * np.arange(_ANGLES) / _ANGLES
     land = np.ones(_ANGLES, dtype=bool)
     for groove in bearing.grooves:

@@ -74,7 +74,7 @@ class Branch:
 
 @compiled()
 def _along(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[Array, Array, Array]:
-    """Forces (m, n) and minus their derivatives (m, n, n) along (m, n) motion."""
+    """Return the forces (m, n) and minus their derivatives (m, n, n) along (m, n) motion."""
     m, n = q.shape
     forces, stiffness, damping = np.empty((m, n)), np.empty((m, n, n)), np.empty((m, n, n))
     for i in range(m):
@@ -108,7 +108,7 @@ class _Balance:
         self._plain: tuple[float, Plain, Plain] | None = None
 
     def plains(self, speed: float) -> tuple[Plain, Plain]:
-        """Arrays of the whole machine, and of its links alone."""
+        """Return the arrays of the whole machine, and of its links alone."""
         if self._plain is None or self._plain[0] != speed:
             whole = self.system.plain(speed, speed)
             zero = np.zeros_like(whole.mass)
@@ -120,7 +120,7 @@ class _Balance:
         return self._plain[1], self._plain[2]
 
     def linear(self, speed: float, frequency: float) -> tuple[Array, Array]:
-        """Matrix (h s, h s) and right side (h s,) of the linear machine."""
+        """Return the matrix (h s, h s) and right side (h s,) of the linear machine."""
         whole, _ = self.plains(speed)
         s, h = self.held.size, self.harmonics
         matrix = np.zeros((self.count, s, self.count, s))
@@ -157,7 +157,7 @@ class _Balance:
         return q, v
 
     def residual(self, c: Array, frequency: float, speed: float) -> tuple[Array, Array, Array]:
-        """Residual, its derivatives by the coefficients, and by the frequency."""
+        """Return the residual, its derivatives by the coefficients, and by the frequency."""
         _, links = self.plains(speed)
         matrix, right = self.linear(speed, frequency)
         q, v = self.motion(c, frequency)
@@ -185,7 +185,7 @@ class _Balance:
         return matrix @ c - right - pull, by_c, more / step + own.ravel()
 
     def films(self, c: Array, frequency: float) -> tuple[Array, float]:
-        """Amplitude of each film's journal, and the smallest film [m]."""
+        """Return the amplitude of each film's journal, and the smallest film [m]."""
         q, v = self.motion(c, frequency)
         sizes, least = [], math.inf
         for link in self.system.links:
@@ -227,7 +227,7 @@ class _Balance:
 def threshold(
     system: MotionSystem, speeds: Array, guess: Array
 ) -> tuple[float, float, Array, ComplexArray] | None:
-    """First speed at which the static position becomes unstable.
+    """Return the first speed at which the static position becomes unstable.
 
     Returns speed, frequency : float: [rad/s]
     Returns position, shape : (n,) arrays: Static position [m] and the unstable mode there; or None:

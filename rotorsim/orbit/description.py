@@ -148,7 +148,7 @@ def _orbit_rows(said: Mapping[str, Any]) -> list[Row]:
 
 
 def ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
-    """Half axes in the unit shown and the sense; a dash without an ellipse."""
+    """Return half axes in the unit shown and the sense; a dash without an ellipse."""
     if ellipse is None:
         return "-"
     axes = (_SMALL.text(ellipse[key], 3) for key in ("semi_major", "semi_minor"))
@@ -156,7 +156,7 @@ def ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
 
 
 def whirl_range_text(found: Mapping[str, Any]) -> str:
-    """From which speed to which a run through the speeds whirls, and where most."""
+    """Say from which speed to which a run through the speeds whirls, and where most."""
     first, last, most = (
         QUANTITIES["speed"].text(found[key])
         for key in ("first_speed", "last_speed", "strongest_speed")
@@ -170,7 +170,7 @@ def whirl_range_text(found: Mapping[str, Any]) -> str:
 
 
 def orbit_html(orbit: Orbit) -> str:
-    """Orbit for notebooks; `rotorsim.show.figures.orbits.orbit_plot` draws it."""
+    """Return the orbit for notebooks; `rotorsim.show.figures.orbits.orbit_plot` draws it."""
     said = describe_orbit(orbit)
     (name,) = run_names([orbit])
     notes = (orbit.message, orbit.note)

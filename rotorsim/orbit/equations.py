@@ -64,7 +64,7 @@ def initial_state(problem: OrbitProblem, equilibrium: tuple[float, float]) -> Ar
 
 
 def right_hand_side(problem: OrbitProblem) -> tuple[Rates, FilmSeries, Tangent | None]:
-    """State rates, and the film force on the journal along (n, 5) motion and states (n, k).
+    """Return state rates, and the film force on the journal along (n, 5) motion and states (n, k).
 
     Last the rates with the film's force linear about a state, where it knows its K and C.
     """
@@ -183,14 +183,14 @@ def pack_loads(loads: Sequence[Load], rotor: Rotor) -> tuple[Array, Array]:
 
 
 def load_on_rotor(loads: Sequence[Load], rotor: Rotor, t: Array) -> Array:
-    """Sum of the loads over all nodes (n, 2) [N] at times t (n,)."""
+    """Return the sum of the loads over all nodes (n, 2) [N] at times t (n,)."""
     shapes, numbers = pack_loads(loads, rotor)
     every = _load_series(np.asarray(t, dtype=float), shapes, numbers)
     return np.stack([every[:, rotor.first_unknown + axis].sum(axis=1) for axis in (0, 1)], axis=1)
 
 
 def _plane(node: int, rotor: Rotor) -> slice:
-    """Place of a node's x and y."""
+    """Return the place of a node's x and y."""
     if not 0 <= node < len(rotor.nodes):
         raise InputError(
             f"must be from 0 to {len(rotor.nodes) - 1}", key="orbit.load.node", value=node
@@ -220,7 +220,7 @@ def _add_loads(t: float, force: Array, shapes: Array, times: Array) -> None:
 
 @compiled()
 def _load_series(t: Array, shapes: Array, times: Array) -> Array:
-    """Loads on every degree of freedom (n, 2k) [N] at times t (n,); see `pack_loads`."""
+    """Return the loads on every degree of freedom (n, 2k) [N] at times t (n,); see `pack_loads`."""
     out = np.zeros((t.size, shapes.shape[2]))
     for i in range(t.size):
         _add_loads(t[i], out[i], shapes, times)
@@ -240,7 +240,7 @@ def _motion_rates(
     controller: Array,
     reference: Array,
 ) -> Array:
-    """State rates from known forces of the film.
+    """Return the state rates from known forces of the film.
 
     film: on the journal's two unknowns, and on the last ones, those of pads;
     state: displacements, velocities, controller states; rotor: inverse mass, damping, stiffness,
@@ -318,7 +318,7 @@ def _compiled_state_rates(
     controller: Array,
     reference: Array,
 ) -> Array:
-    """State rates with the film force of one of the compiled models."""
+    """Return the state rates with the film force of one of the compiled models."""
     size = rotor.shape[1]
     speed = shaft(t, schedule)[1]
     vx, vy = float(state[size]), float(state[size + 1])

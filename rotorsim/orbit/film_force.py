@@ -123,7 +123,7 @@ class SolvedFilmForce:
 
     @classmethod
     def of(cls, solution: FilmSolution, others: Sequence[FilmSolution] = ()) -> SolvedFilmForce:
-        """Force of the solved film, its viscosity field and its clearance kept.
+        """Return the force of the solved film, its viscosity field and its clearance kept.
 
         others : The same film at other speeds, whose viscosity fields are kept as well.
         """
@@ -146,7 +146,7 @@ class SolvedFilmForce:
         )
 
     def _layers(self, speed: float) -> LayerIntegrals:
-        """Viscosity field at a speed: linear between the known ones, held beyond them."""
+        """Return viscosity field at a speed: linear between the known ones, held beyond them."""
         if not self.others:
             return self.layers
         speeds = [known for known, _ in self.others]
@@ -184,14 +184,14 @@ class SolvedFilmForce:
         return np.asarray(block_diag(rotation(self.frame), np.eye(len(self.pads))))
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Film force on the journal [N], pads at rest; ArithmeticError without a film."""
+        """Return film force on the journal [N], pads at rest; ArithmeticError without a film."""
         pads = self.rest[2:]
         q, v = np.array([x, y, *pads]), np.array([vx, vy, *np.zeros(len(pads))])
         fx, fy = self.forces(q, v, speed)[:2]
         return float(fx), float(fy)
 
     def forces(self, q: Array, v: Array, speed: float) -> Array:
-        """Generalised forces of film and pivots, (q,), on journal and pads, load frame.
+        """Return the generalised forces of film and pivots, (q,), on journal and pads, load frame.
 
         q, v : (q,) arrays. Displacements of journal and pads, and their rates.
 
@@ -200,7 +200,7 @@ class SolvedFilmForce:
         return self._turn @ self.film(q, v, speed).force - self._pivots(q)[0]
 
     def linear(self, q: Array, v: Array, speed: float) -> tuple[Array, Array, Array]:
-        """`forces`, and their K and C there."""
+        """Return `forces`, and their K and C there."""
         state = self.film(q, v, speed)
         stiffness, damping = (self._turn @ part @ self._turn.T for part in linearize(state))
         held, tangent = self._pivots(q)
@@ -216,7 +216,7 @@ class SolvedFilmForce:
         return Coefficients(np.real(felt), np.imag(felt) / speed, speed)
 
     def eigenvalues(self, mass: float, speed: float) -> ComplexArray:
-        """Of a rigid rotor [kg] and the pads at rest [1/s], the least stable one first."""
+        """Return those of a rigid rotor [kg] and the pads at rest [1/s], the least stable first."""
         rest = self._turn @ self.rest
         _, stiffness, damping = self.linear(rest, np.zeros_like(rest), speed)
         inertia = np.asarray(block_diag(mass * np.eye(2), self.pad_mass))
@@ -224,7 +224,7 @@ class SolvedFilmForce:
         return np.asarray(values[np.argsort(-np.real(values), kind="stable")], dtype=complex)
 
     def _pivots(self, q: Array) -> tuple[Array, Array]:
-        """Forces of the pads' pivots, and their stiffnesses."""
+        """Return the forces of the pads' pivots, and their stiffnesses."""
         held, tangent = np.zeros((2, len(q)))
         for pad, own in zip(self.bearing.pads, pad_unknowns(self.bearing)[1], strict=True):
             if own.pivot is not None:
@@ -249,7 +249,7 @@ class SolvedFilmForce:
         return state
 
     def thinnest(self, q: Array) -> Array:
-        """Smallest film thickness [m] at each row of `q`, (n, q), load frame."""
+        """Return the smallest film thickness [m] at each row of `q`, (n, q), load frame."""
         thinnest = self.problem.geometry.thinnest_at
         return np.array([thinnest(self._turn.T @ row) for row in q])
 
@@ -274,12 +274,12 @@ class ActuatedSolvedFilm(SolvedFilmForce):
 
     @classmethod
     def beside(cls, film: SolvedFilmForce, feedback: StateFeedback) -> ActuatedSolvedFilm:
-        """The film with an actuator beside it."""
+        """Return the film with an actuator beside it."""
         own = {one.name: getattr(film, one.name) for one in fields(film) if one.init}
         return cls(**{**own, "name": f"{film.name} with actuator"}, feedback=feedback)
 
     def actuator_force(self, x: ArrayLike, y: ArrayLike, vx: ArrayLike, vy: ArrayLike) -> Array:
-        """Force of the actuator alone (..., 2) [N]."""
+        """Return the force of the actuator alone (..., 2) [N]."""
         assert self.feedback is not None
         rest = self._turn @ self.rest
         return self.feedback(
@@ -287,13 +287,13 @@ class ActuatedSolvedFilm(SolvedFilmForce):
         )
 
     def forces(self, q: Array, v: Array, speed: float) -> Array:
-        """As of the film alone, with the actuator's force on the journal."""
+        """Return those of the film alone plus the actuator's force on the journal."""
         both = super().forces(q, v, speed)
         both[:2] += self.actuator_force(*q[:2], *v[:2])
         return both
 
     def linear(self, q: Array, v: Array, speed: float) -> tuple[Array, Array, Array]:
-        """As of the film alone, with the actuator; a saturated axis has no stiffness."""
+        """Return those of film and actuator together; a saturated axis has no stiffness."""
         assert self.feedback is not None
         force, stiffness, damping = super().linear(q, v, speed)
         own = self.actuator_force(*q[:2], *v[:2])
@@ -339,7 +339,7 @@ def loaded_film(
     cache: Path | None = None,
     progress: Progress | None = None,
 ) -> LoadedFilm:
-    """Film force of a case, with its load.
+    """Return the film force of a case, with its load.
 
     speed : Of the operating point [rad/s]: where the mesh is graded, where ``max_film`` holds its
         line p = 0, whose viscosity field a heated film keeps, and at which an eccentricity ratio is
@@ -394,7 +394,7 @@ def other_films(case: Case, load: float, speeds: Sequence[float]) -> list[FilmSo
 
 
 def field_speeds(speeds: Sequence[float]) -> list[float]:
-    """Speeds [rad/s] below the highest at which heated films of a run are solved."""
+    """Return the speeds [rad/s] below the highest at which heated films of a run are solved."""
     low, high = max(min(speeds), _SLOWEST_FIELD * max(speeds)), max(speeds)
     if low > (1.0 - 1e-6) * high:
         return []
@@ -422,7 +422,7 @@ def _mapped(case: Case, speed: float, cache: Path | None, progress: Progress | N
 
 
 def operating_film(case: Case, speed: float) -> FilmSolution:
-    """Film at rest about which an orbit runs, at `speed` [rad/s]; InputError without one."""
+    """Return film at rest about which an orbit runs, at `speed` [rad/s]; InputError without one."""
     try:
         solution = (solve_pads if case.bearing.pads else solve_film)(case, speed)
     except (NoFilmError, SingularFilmError) as error:

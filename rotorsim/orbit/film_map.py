@@ -73,7 +73,7 @@ def film_force_map(
     cache: Path | None = None,
     progress: Progress | None = None,
 ) -> ForceMap:
-    """Map of a plain bearing's film; read from the cache where it has been solved before.
+    """Return map of a plain bearing's film; read from the cache where it has been solved before.
 
     length_to_diameter : L/D [-]; maps are kept for L/D rounded to six digits.
     cavitation : ``reynolds``, ``half_sommerfeld`` or ``full_sommerfeld``.
@@ -101,7 +101,7 @@ def film_force_map(
 
 
 def cache_folder() -> Path:
-    """Folder for what can be computed again: ROTORSIM_CACHE, or the system's usual place."""
+    """Return folder for what can be computed again: ROTORSIM_CACHE, or the system's usual place."""
     chosen = os.environ.get("ROTORSIM_CACHE")
     if chosen:
         return Path(chosen)
@@ -117,7 +117,7 @@ def cache_folder() -> Path:
 def map_path(
     length_to_diameter: float, cavitation: Cavitation, folder: Path, leakage: float | None = None
 ) -> Path:
-    """File of one map; its name holds everything that the numbers depend on."""
+    """Return the file of one map; its name holds everything that the numbers depend on."""
     settings = (
         sources_digest(), length_to_diameter, cavitation.value, _ROWS, _COLUMNS,
         _MAX_ECCENTRICITY_RATIO, _MESH, _THIN_MESH, _THIN, _CROWDING, leakage,
@@ -169,7 +169,7 @@ def _kept_map(film: SqueezeFilm, folder: Path, progress: Progress | None) -> For
 
 
 def _written(path: Path) -> int | None:
-    """Time of a file's last change [ns]; None where there is none."""
+    """Return the time of a file's last change [ns]; None where there is none."""
     try:
         return path.stat().st_mtime_ns
     except OSError:
@@ -188,7 +188,7 @@ def write_map(path: Path, force_map: ForceMap) -> None:
 
 
 def _checksum(coefficients: Array, numbers: Array) -> NDArray[np.uint8]:
-    """SHA-256 of a map's arrays, shapes included, as 32 bytes."""
+    """Return SHA-256 of a map's arrays, shapes included, as 32 bytes."""
     digest = hashlib.sha256(repr((coefficients.shape, numbers.shape)).encode())
     for values in (coefficients, numbers):
         digest.update(np.ascontiguousarray(values, dtype="<f8").tobytes())
@@ -230,7 +230,7 @@ class SqueezeFilm:
     _films: tuple[_RestingFilm, ...] = field(default=(), init=False, repr=False)
 
     def impedance(self, eccentricity_ratio: float, angle: float) -> tuple[float, float]:
-        """Radial and tangential impedance (see `rotorsim.orbit.force_map`)."""
+        """Return the radial and tangential impedance (see `rotorsim.orbit.force_map`)."""
         if not self._films or self._films[0].eccentricity_ratio != eccentricity_ratio:
             thin = eccentricity_ratio > _THIN
             around, along = self.mesh or (_THIN_MESH if thin else _MESH)
@@ -283,7 +283,7 @@ class _RestingFilm:
 def squeezed_film(
     force: FilmMapForce, x: float, y: float, vx: float, vy: float
 ) -> tuple[Array, Array, Array] | None:
-    """Angles (n,) [rad], places along (m,) [m] and pressure (n, m) [Pa] of a mapped film.
+    """Return angles (n,) [rad], places along (m,) [m] and pressure (n, m) [Pa] of a mapped film.
 
     x, y, vx, vy : Position and squeeze velocity of the journal [m, m/s].
 
@@ -308,7 +308,7 @@ def squeezed_film(
 
 
 def _sealed(problem: FilmProblem, position: tuple[float, float], leakage: float) -> FilmProblem:
-    """Film with seals at its ends: in series with the last half cells, as a length more.
+    """Return the film with seals at its ends: in series with the last half cells, as a length more.
 
     A length s of film lets h^3/(12 mu s) pass, the seal leakage c^3/(12 mu L).
     """
@@ -322,7 +322,7 @@ def _sealed(problem: FilmProblem, position: tuple[float, float], leakage: float)
 
 
 def _crowded(problem: FilmProblem) -> FilmProblem:
-    """Film on a mesh whose cells crowd towards the bearing's end, p = 0 all round it."""
+    """Return the film on a mesh whose cells crowd towards the bearing's end, p = 0 all round it."""
     mesh = problem.mesh
     half = float(mesh.y_faces[-1])
     mesh = replace(mesh, y_faces=half * (1.0 - (1.0 - mesh.y_faces / half) ** _CROWDING))

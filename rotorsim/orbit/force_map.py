@@ -68,7 +68,7 @@ class ForceMap:
         return np.array([self.first, self.step, self.last, self.central])
 
     def impedance(self, eccentricity_ratio: float, angle: float) -> tuple[float, float]:
-        """Radial and tangential impedance at one point."""
+        """Return the radial and tangential impedance at one point."""
         return kernels.map_impedance(
             float(eccentricity_ratio), float(angle), self.numbers, self.coefficients
         )
@@ -148,19 +148,19 @@ class FilmMapForce:
     name: str = "film_map"
 
     def compiled(self, lowest_speed: float = 0.0, highest_speed: float = 0.0) -> CompiledForce:
-        """Compiled form; good at any speed."""
+        """Return the compiled form; good at any speed."""
         del lowest_speed, highest_speed
         scale = squeeze_force_scale(self.viscosity, self.length, self.radius, self.radial_clearance)
         numbers = np.array([self.radial_clearance, scale, *self.force_map.numbers])
         return CompiledForce(kernels.FORCE_MAP, numbers, self.force_map.coefficients)
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Film force [N]."""
+        """Return the film force [N]."""
         return self.compiled().evaluate(x, y, vx, vy, speed)
 
 
 def _row(impedance: _Impedance, eps: float, columns: int, symmetric: bool) -> Array:
-    """Radial and tangential impedance over one turn, (2, columns)."""
+    """Return the radial and tangential impedance over one turn, (2, columns)."""
     angles = _angles(eps, columns)
     if not symmetric:
         return np.array([impedance(eps, float(a)) for a in angles]).T
@@ -170,7 +170,7 @@ def _row(impedance: _Impedance, eps: float, columns: int, symmetric: bool) -> Ar
 
 
 def _angles(eps: float, columns: int) -> Array:
-    """Angles alpha of the columns, (columns,), from 0 to 2 pi."""
+    """Return the angles alpha of the columns, (columns,), from 0 to 2 pi."""
     thinness = math.sqrt((1.0 - eps) * (1.0 + eps))
     wanted = 2.0 * np.pi * np.arange(columns // 2 + 1) / columns
     low, high = np.zeros(wanted.size), np.full(wanted.size, np.pi)
@@ -184,7 +184,7 @@ def _angles(eps: float, columns: int) -> Array:
 
 
 def _bicubic(values: Array) -> Array:
-    """Uniform cubic B-spline coefficients through values (2, n, m), periodic along the last.
+    """Return uniform cubic B-spline coefficients through values (2, n, m), periodic along the last.
 
     Along the second axis the ends are not-a-knot: the first two and last two intervals share one
     cubic.

@@ -35,7 +35,7 @@ class BearingForce(Protocol):
         ...
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Force (fx, fy) [N] at x, y [m], vx, vy [m/s] and shaft speed [rad/s]."""
+        """Return the force (fx, fy) [N] at x, y [m], vx, vy [m/s] and shaft speed [rad/s]."""
         ...
 
 
@@ -44,7 +44,7 @@ class ActuatedFilm(BearingForce, Protocol):
     """A film with an actuator beside it: `force` is that of both."""
 
     def actuator_force(self, x: ArrayLike, y: ArrayLike, vx: ArrayLike, vy: ArrayLike) -> Array:
-        """Force (n, 2) [N] of the actuator alone along (n,) positions and velocities."""
+        """Return the force (n, 2) [N] of the actuator alone along (n,) positions and velocities."""
         ...
 
 
@@ -59,7 +59,7 @@ class CompiledForce:
     def evaluate(
         self, x: float, y: float, vx: float, vy: float, speed: float
     ) -> tuple[float, float]:
-        """Film force [N] at one point."""
+        """Return the film force [N] at one point."""
         # whole numbers would be compiled for anew
         motion = (float(x), float(y), float(vx), float(vy), float(speed))
         return kernels.film_force(self.kind, *motion, self.numbers, self.table)
@@ -70,7 +70,7 @@ class CompilableForce(BearingForce, Protocol):
     """A force with a compiled form: the integrator is then some ten times faster."""
 
     def compiled(self, lowest_speed: float, highest_speed: float) -> CompiledForce:
-        """Compiled form, good between two speeds [rad/s]."""
+        """Return the compiled form, good between two speeds [rad/s]."""
         ...
 
 
@@ -113,12 +113,12 @@ class LinearForce:
         return values
 
     def position(self, speed: float) -> tuple[float, float]:
-        """Equilibrium [m] at one speed."""
+        """Return the equilibrium [m] at one speed."""
         x0, y0 = self.at(speed)[8:]
         return float(x0), float(y0)
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Film force [N]."""
+        """Return the film force [N]."""
         values = self.at(speed)
         away = np.array([x, y]) - values[8:]
         pull = values[:4].reshape(2, 2) @ away + values[4:8].reshape(2, 2) @ np.array([vx, vy])
@@ -142,7 +142,7 @@ class LinearForce:
 
 
 def squeeze_force_scale(viscosity: float, length: float, radius: float, clearance: float) -> float:
-    """2 mu L (R/c)^3 [N s/m]: the unit of film force per squeeze velocity."""
+    """Return 2 mu L (R/c)^3 [N s/m]: the unit of film force per squeeze velocity."""
     return 2.0 * viscosity * length * (radius / clearance) ** 3
 
 
@@ -163,7 +163,7 @@ class ShortBearingForce:
     ruptured: bool = True
 
     def compiled(self, lowest_speed: float = 0.0, highest_speed: float = 0.0) -> CompiledForce:
-        """Compiled form; good at any speed."""
+        """Return the compiled form; good at any speed."""
         del lowest_speed, highest_speed
         scale = squeeze_force_scale(self.viscosity, self.length, self.radius, self.radial_clearance)
         numbers = np.array([self.radial_clearance, scale, self.length / (2.0 * self.radius)])
@@ -171,7 +171,7 @@ class ShortBearingForce:
         return CompiledForce(kind, numbers, np.zeros((1, 1, 1)))
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Film force [N]."""
+        """Return the film force [N]."""
         return self.compiled().evaluate(x, y, vx, vy, speed)
 
 
@@ -195,7 +195,7 @@ class StopForce:
     name: str = "stop"
 
     def compiled(self, lowest_speed: float = 0.0, highest_speed: float = 0.0) -> CompiledForce:
-        """Compiled form; good at any speed."""
+        """Return the compiled form; good at any speed."""
         del lowest_speed, highest_speed
         numbers = np.array(
             [self.radial_clearance, self.stiffness, self.damping, self.friction, self.radius,
@@ -204,7 +204,7 @@ class StopForce:
         return CompiledForce(kernels.STOP, numbers, np.zeros((1, 1, 1)))
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Force on the shaft [N]; `speed` is the shaft's."""
+        """Return the force on the shaft [N]; `speed` is the shaft's."""
         return self.compiled().evaluate(x, y, vx, vy, speed)
 
 
@@ -217,14 +217,14 @@ class CallableForce:
     name: str = "film"
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
-        """Film force [N]."""
+        """Return the film force [N]."""
         return self.function(x, y, vx, vy, speed)
 
 
 def find_equilibrium(
     force: BearingForce, load: tuple[float, float], speed: float
 ) -> tuple[float, float]:
-    """Position (x, y) [m] where the film carries the static load [N] at a speed [rad/s].
+    """Return the position (x, y) [m] where the film carries the static load [N] at a speed [rad/s].
 
     Raises InputError: No position within the clearance carries the load.
 
@@ -267,7 +267,7 @@ def find_equilibrium(
 def linearize_force(
     force: BearingForce, x: float, y: float, speed: float, step: float = 1e-5
 ) -> tuple[Array, Array]:
-    """K [N/m] and C [N s/m] by fourth-order central differences at a position at rest.
+    """Return K [N/m] and C [N s/m] by fourth-order central differences at a position at rest.
 
     step : Over the clearance (and over clearance times speed).
     """

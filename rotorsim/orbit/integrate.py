@@ -110,7 +110,7 @@ def simulate(
 
 
 def _turns(pieces: Iterable[Orbit]) -> float:
-    """Revolutions that the pieces hold together."""
+    """Return the revolutions that the pieces hold together."""
     return sum(p.t.size / p.samples_per_revolution for p in pieces)
 
 
@@ -180,7 +180,7 @@ def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> 
 
 
 def _jacobian(run: _Run) -> Callable[[float, Array], Array]:
-    """Derivatives of the rates by differences, in steps that the film's stiffness shows in.
+    """Return derivatives of the rates by differences, in steps that the film's stiffness shows in.
 
     The integrators' own steps follow the size of each state: that of a velocity at rest is so
     small that the force does not change beyond rounding. Newton's method then fails close to the
@@ -279,7 +279,7 @@ def _samples_before(problem: OrbitProblem, t: float) -> int:
 
 
 def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
-    """One piece's samples as an orbit."""
+    """Return one piece's samples as an orbit."""
     problem = run.problem
     size = problem.rotor.mass.shape[0]
     count = min(angles.size, solution.t.size)

@@ -28,7 +28,7 @@ LINEAR, SHORT_BEARING, FORCE_MAP, SHORT_FULL, STOP = 0, 1, 2, 3, 4
 
 @compiled()
 def _squeeze_integrals(eccentricity_ratio: float, angle: float) -> tuple[float, float]:
-    """Integrals of cos(t - a) (cos t, sin t)/(1 - eps cos t)^3 over a - pi/2 to a + pi/2.
+    """Return integrals of cos(t - a) (cos t, sin t)/(1 - eps cos t)^3 over a - pi/2 to a + pi/2.
 
     Sommerfeld's substitution 1 - eps cos t = (1 - eps^2)/(1 + eps cos g) makes them elementary.
 
@@ -57,7 +57,7 @@ def _squeeze_integrals(eccentricity_ratio: float, angle: float) -> tuple[float, 
 def short_bearing_impedance(
     eccentricity_ratio: float, angle: float, slenderness: float
 ) -> tuple[float, float]:
-    """Dimensionless film force on the journal, radial and tangential.
+    """Return the dimensionless film force on the journal, radial and tangential.
 
     angle : From the eccentricity to the squeeze velocity [rad].
     slenderness : L/D [-].
@@ -100,7 +100,7 @@ def _linear_force(
 def map_impedance(
     eccentricity_ratio: float, angle: float, numbers: Array, table: Array
 ) -> tuple[float, float]:
-    """Dimensionless film force (radial, tangential) from a bicubic B-spline.
+    """Return the dimensionless film force (radial, tangential) from a bicubic B-spline.
 
     numbers: first radial coordinate, its step, largest, force at the centre; table: (2, rows + 2,
     columns + 3) B-spline coefficients. Coordinates and what is splined: see
@@ -136,7 +136,7 @@ def map_impedance(
 
 @compiled()
 def map_column(angle: float, thinness: float) -> float:
-    """Angular coordinate of the force map [rad]; see `rotorsim.orbit.force_map`."""
+    """Return the angular coordinate of the force map [rad]; see `rotorsim.orbit.force_map`."""
     cos, sin = math.cos(angle), math.sin(angle)
     return 0.5 * (math.atan2(sin, cos) + math.atan2(thinness * sin, cos))
 
@@ -163,7 +163,7 @@ def _squeeze_force(
     numbers: Array,
     table: Array,
 ) -> tuple[float, float]:
-    """Isoviscous ruptured film at any position and velocity.
+    """Return the isoviscous ruptured film at any position and velocity.
 
     numbers: clearance [m], 2 mu L (R/c)^3 [N s/m], then L/D or the map's numbers.
     """
@@ -224,7 +224,7 @@ def film_force(
     numbers: Array,
     table: Array,
 ) -> tuple[float, float]:
-    """Film force on the journal [N]."""
+    """Return the film force on the journal [N]."""
     if kind == LINEAR:
         return _linear_force(x, y, vx, vy, speed, numbers, table)
     if kind == STOP:
@@ -234,7 +234,7 @@ def film_force(
 
 @compiled()
 def film_force_series(kind: int, motion: Array, numbers: Array, table: Array) -> Array:
-    """Film force (n, 2) [N] along motion (n, 5): x, y, vx, vy, speed."""
+    """Return the film force (n, 2) [N] along motion (n, 5): x, y, vx, vy, speed."""
     out = np.empty((motion.shape[0], 2))
     for i in range(motion.shape[0]):
         m = motion[i]

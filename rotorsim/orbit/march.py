@@ -51,7 +51,7 @@ _SLOPE = np.array([0.25, -0.1043, 0.1035, -0.0362, 0.0, 0.0])
 
 @compiled()
 def _factor(a: Array, order: NDArray[np.int64]) -> bool:
-    """LU factors of `a` in place, rows interchanged; False where it is singular."""
+    """Factor `a` in place, rows interchanged; return False where it is singular."""
     n = a.shape[0]
     for k in range(n):
         best = k
@@ -94,7 +94,7 @@ def _solve(a: Array, order: NDArray[np.int64], b: Array) -> None:
 @compiled()
 def _sample(s: float, h: float, q0: Array, v0: Array, a0: Array, q1: Array, v1: Array, a1: Array,
             q: Array, v: Array) -> None:  # fmt: skip
-    """Quintic Hermite interpolation at the share s of a step h."""
+    """Interpolate by quintic Hermite polynomials at the share s of a step h."""
     s2, s3 = s * s, s * s * s
     for i in range(q.size):
         # remainder after the quadratic at the left end, fitted at the right one
@@ -217,7 +217,7 @@ def march(
 
 @compiled()
 def repeat(matrix: Array, state: Array, count: int) -> Array:
-    """States (count, n) after 0, 1, 2 ... applications of a matrix."""
+    """Return the states (count, n) after 0, 1, 2 ... applications of a matrix."""
     out = np.empty((count, state.size))
     for i in range(count):
         out[i] = state

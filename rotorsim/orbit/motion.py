@@ -156,7 +156,7 @@ class Motion:
         return self.angle / (2.0 * np.pi)
 
     def station(self, name: str) -> Station:
-        """Station by its name.
+        """Return the station by its name.
 
         Raises InputError: There is none; the message lists them.
         """
@@ -167,11 +167,11 @@ class Motion:
         raise InputError(f"must be one of {known}", key="station", value=name)
 
     def stations_of(self, link: int) -> str:
-        """Name of the station of a film."""
+        """Return the name of the station of a film."""
         return next(one.name for one in self.stations if one.link == link)
 
     def displacement(self, places: Sequence[int] | Indices) -> Array:
-        """Displacements (m, k) of unknowns of the whole machine [m]."""
+        """Return the displacements (m, k) of unknowns of the whole machine [m]."""
         rows = np.asarray(places, dtype=np.intp)
         system = self.problem.system
         return self.q @ system.basis[rows].T + system.offset[rows]
@@ -181,11 +181,11 @@ class Motion:
         return link.motion(self.q, self.v, self.speed)
 
     def link_force(self, link: Link) -> Array:
-        """Force (m, 2) of a link on its inner body [N]."""
+        """Return the force (m, 2) of a link on its inner body [N]."""
         return self.problem.system.link_forces(link, self.q, self.v, self.speed)
 
     def orbit(self, name: str) -> Orbit:
-        """Motion of one station for analysis, figures and recordings of an `Orbit`.
+        """Return the motion of one station for analysis, figures and recordings of an `Orbit`.
 
         In a film it is relative to the housing, with the film's force; elsewhere it is that of
         the shaft's centre, without a force.
@@ -224,7 +224,7 @@ class Motion:
         )  # fmt: skip
 
     def part(self, first: int, last: int | None = None) -> Motion:
-        """Samples first to last (excluded)."""
+        """Return the samples first to last (excluded)."""
         chosen = slice(first, last)
         cut = {name: getattr(self, name)[chosen] for name in _SERIES}
         return replace(self, **cut)
@@ -236,7 +236,7 @@ _SERIES = ("t", "speed", "angle", "q", "v")
 def static_position(
     system: MotionSystem, plain: Plain, speed: float, guess: Array
 ) -> tuple[Array, float]:
-    """Displacements (n,) at which the machine rests, and the force that is left over [N].
+    """Return displacements (n,) at which the machine rests, and the force that is left over [N].
 
     Newton's method with the links' derivatives by differences, steps halved where films would
     touch; unbalance and varying loads do not act.
@@ -356,7 +356,7 @@ _Advance = Callable[[Array, Array, float, float, Array], _Answer]
 
 
 def _edges(problem: MotionProblem, schedule: SpeedSchedule) -> list[float]:
-    """Where pieces end [s]: after some revolutions, and at corners of speed and loads."""
+    """Return where pieces end [s]: after some revolutions, and at corners of speed and loads."""
     turns = np.arange(0.0, schedule.revolutions, _CHUNK_REVOLUTIONS)
     corners = {start for start, _ in problem.system.unbalance}
     corners |= {time for load in problem.system.loads for time in (load.start, load.stop)}
@@ -486,7 +486,7 @@ class _Scipy:
         self.size = n
 
     def rates(self, t: float, s: Array) -> Array:
-        """State rates: displacements, velocities; angle and speed where a torque drives."""
+        """Return state rates: displacements, velocities; angle and speed where a torque drives."""
         n, problem, p = self.size, self.problem, self.problem.plain
         q, v = np.ascontiguousarray(s[:n]), np.ascontiguousarray(s[n : 2 * n])
         if self.schedule is not None:
@@ -569,7 +569,7 @@ class _Scipy:
 
 
 def _driven(problem: MotionProblem, drive: TorqueDrive) -> Iterator[Motion]:
-    """Pieces of a run whose speed follows from a torque."""
+    """Return the pieces of a run whose speed follows from a torque."""
     from scipy.integrate import solve_ivp
 
     solver, n = _Scipy(problem, None), problem.system.size

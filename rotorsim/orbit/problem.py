@@ -114,12 +114,12 @@ class SpeedSchedule:
         return self.knots[index]
 
     def speed_at(self, t: float | Array) -> Array:
-        """Speed [rad/s] at time t [s]."""
+        """Return the speed [rad/s] at time t [s]."""
         piece = self._piece(np.asarray(t, dtype=float))
         return piece[..., 1] + piece[..., 3] * (t - piece[..., 0])
 
     def angle_at(self, t: float | Array) -> Array:
-        """Shaft angle [rad] at time t [s]."""
+        """Return the shaft angle [rad] at time t [s]."""
         piece = self._piece(np.asarray(t, dtype=float))
         since = t - piece[..., 0]
         return piece[..., 2] + since * (piece[..., 1] + 0.5 * piece[..., 3] * since)
@@ -165,12 +165,12 @@ class Controller:
                 )
 
     def force(self, state: Array, away: Array) -> Array:
-        """Force (n, 2) [N] from controller states (n, k) and the journal's s (n, 4)."""
+        """Return the force (n, 2) [N] from controller states (n, k) and the journal's s (n, 4)."""
         return state @ self.c.T + away @ self.d.T
 
     @classmethod
     def state_feedback(cls, gain: Array, reference: tuple[float, float] = (0.0, 0.0)) -> Controller:
-        """Force = -gain s, gain a (2, 4) array [N/m, N s/m]."""
+        """Return the force = -gain s, gain a (2, 4) array [N/m, N s/m]."""
         return cls(np.zeros((0, 0)), np.zeros((0, 4)), np.zeros((2, 0)), -gain, reference)
 
 
@@ -237,12 +237,12 @@ class OrbitProblem:
         return self.force.pads if isinstance(self.force, SolvedFilmForce) else ()
 
     def moving(self, motion: Array) -> Array:
-        """Columns of the rotor's displacements or rates (..., n) that move the film."""
+        """Return the columns of the rotor's displacements or rates (..., n) that move the film."""
         first = motion.shape[-1] - len(self.pads)
         return np.concatenate([motion[..., :2], motion[..., first:]], axis=-1)
 
     def film_at(self, displacements: Array) -> Array:
-        """Smallest film thickness [m] at displacements (..., n) of the rotor [m]."""
+        """Return the smallest film thickness [m] at displacements (..., n) of the rotor [m]."""
         if isinstance(self.force, SolvedFilmForce) and self.pads:
             return self.force.thinnest(self.moving(displacements))
         x, y = displacements[:, 0], displacements[:, 1]

@@ -91,7 +91,7 @@ class Ellipse:
 
 
 def _window(orbit: Orbit) -> tuple[Array, ComplexArray, Array]:
-    """Angles [rev], z [m] and normalised Hann weights."""
+    """Return the angles [rev], z [m] and normalised Hann weights."""
     n = orbit.t.size
     if n < 2 * orbit.samples_per_revolution:
         raise InputError("needs two revolutions or more", key="orbit.revolutions")
@@ -100,7 +100,7 @@ def _window(orbit: Orbit) -> tuple[Array, ComplexArray, Array]:
 
 
 def spectrum(orbit: Orbit) -> Spectrum:
-    """Two-sided amplitude spectrum of the whole record, drift removed (Hann window).
+    """Return the two-sided amplitude spectrum of the whole record, drift removed (Hann window).
 
     The drift is a straight line: in a run through the speeds the static position moves, which is no
     vibration of low frequency.
@@ -116,7 +116,7 @@ def spectrum(orbit: Orbit) -> Spectrum:
 
 
 def cascade(orbit: Orbit, revolutions: int = 16, overlap: float = 0.5) -> Cascade:
-    """Spectra of successive blocks.
+    """Return the spectra of successive blocks.
 
     revolutions : In each block: orders are resolved to 1/revolutions.
     overlap : Of neighbouring blocks, 0 to below 1.
@@ -142,7 +142,7 @@ def cascade(orbit: Orbit, revolutions: int = 16, overlap: float = 0.5) -> Cascad
 
 
 def whirl_frequency_ratio(orbit: Orbit) -> float | None:
-    """Order of the strongest motion that is no multiple of the shaft's frequency.
+    """Return the order of the strongest motion that is no multiple of the shaft's frequency.
 
     Returns: Positive for forward whirl, negative for backward; None where nothing but the static
         position and harmonics of the shaft's frequency remains (below 1e-6 of the clearance).

@@ -36,11 +36,11 @@ class GeneralisedForce(Protocol):
     """A solved film whose pads move as well (see `SolvedFilmForce`)."""
 
     def forces(self, q: Array, v: Array, speed: float) -> Array:
-        """Forces (k,) on journal and pads."""
+        """Return the forces (k,) on journal and pads."""
         ...
 
     def linear(self, q: Array, v: Array, speed: float) -> tuple[Array, Array, Array]:
-        """`forces`, and stiffness and damping (k, k)."""
+        """Return `forces`, and stiffness and damping (k, k)."""
         ...
 
 
@@ -79,7 +79,7 @@ class Link:
     pads: tuple[int, ...] = ()
 
     def motion(self, q: Array, v: Array, speed: Array) -> Array:
-        """Position, velocity and speed (m, 5) that the force is asked for, along a run."""
+        """Return position, velocity and speed (m, 5) that the force is asked for, along a run."""
         columns = []
         for values, offset in ((q, self.offset), (v, (0.0, 0.0))):
             for axis in (0, 1):
@@ -101,7 +101,7 @@ class LinearBlock:
     law: Callable[[float], tuple[Array, Array, Array]]
 
     def row(self, speed: float) -> Array:
-        """K, C and f in one row, (2 m^2 + m,)."""
+        """Return K, C and f in one row, (2 m^2 + m,)."""
         force, stiffness, damping = self.law(speed)
         return np.concatenate([np.ravel(stiffness), np.ravel(damping), np.ravel(force)])
 
@@ -168,7 +168,7 @@ class MotionSystem:
         return all(isinstance(link.force, CompilableForce) for link in self.links)
 
     def plain(self, lowest: float, highest: float) -> Plain:
-        """Arrays for the compiled functions, good between two speeds [rad/s].
+        """Return the arrays for the compiled functions, good between two speeds [rad/s].
 
         Links without a compiled form are left out: their forces are added in Python.
         """
@@ -231,7 +231,7 @@ class MotionSystem:
         )  # fmt: skip
 
     def solved(self, q: Array, v: Array, speed: float) -> Array:
-        """Forces (n,) of the links that have no compiled form."""
+        """Return the forces (n,) of the links that have no compiled form."""
         force = np.zeros(self.size)
         for link in self.links:
             if not isinstance(link.force, CompilableForce):
@@ -239,7 +239,7 @@ class MotionSystem:
         return force
 
     def solved_derivatives(self, q: Array, v: Array, speed: float) -> tuple[Array, Array]:
-        """Stiffness and damping (n, n) of the links without a compiled form."""
+        """Return the stiffness and damping (n, n) of the links without a compiled form."""
         found = np.zeros((2, self.size, self.size))
         for link in self.links:
             if not isinstance(link.force, CompilableForce):
@@ -251,7 +251,7 @@ class MotionSystem:
         return found[0], found[1]
 
     def link_forces(self, link: Link, q: Array, v: Array, speed: Array) -> Array:
-        """Force (m, 2) of a link on its inner body along (m, n) motion [N]."""
+        """Return the force (m, 2) of a link on its inner body along (m, n) motion [N]."""
         if isinstance(link.force, CompilableForce):
             rows = link.motion(q, v, speed)
             return np.array([link.force.force(*row) for row in rows]).reshape(-1, 2)
@@ -296,7 +296,7 @@ class MotionSystem:
 
     @staticmethod
     def _spread(link: Link, pull: Array) -> tuple[Indices, Array]:
-        """Where the forces of a link act, and how large they are."""
+        """Return where the forces of a link act, and how large they are."""
         at, sizes = [*link.inner, *link.pads], [*pull]
         if link.outer[0] >= 0:
             at += link.outer
@@ -304,7 +304,7 @@ class MotionSystem:
         return np.array(at, dtype=np.intp), np.array(sizes)
 
     def displacement(self, q: Array) -> Array:
-        """Displacements (m, k) of the whole machine along (m, n) unknowns."""
+        """Return the displacements (m, k) of the whole machine along (m, n) unknowns."""
         return q @ self.basis.T + self.offset
 
 
@@ -345,7 +345,7 @@ def _at(values: Array, index: int) -> float:
 
 @compiled()
 def link_place(k: int, q: Array, v: Array, p: Plain) -> tuple[float, ...]:
-    """x, y, vx, vy of link k relative to its housing, and the speed of its ring."""
+    """Return the x, y, vx, vy of link k relative to its housing, and the speed of its ring."""
     links, f = p.links[k], p.link_numbers[k]
     x = _at(q, links[1]) - _at(q, links[3]) - f[4]
     y = _at(q, links[2]) - _at(q, links[4]) - f[5]
@@ -358,7 +358,7 @@ def link_place(k: int, q: Array, v: Array, p: Plain) -> tuple[float, ...]:
 def link_force(
     k: int, x: float, y: float, vx: float, vy: float, ring: float, w: float, p: Plain
 ) -> tuple[float, float, float]:
-    """Force (x, y) of link k on its inner body, and its torque on the ring."""
+    """Return the force (x, y) of link k on its inner body, and its torque on the ring."""
     links, f = p.links[k], p.link_numbers[k]
     numbers = p.numbers[links[6] : links[6] + links[7]]
     count = links[9] * links[10] * links[11]
@@ -375,7 +375,7 @@ def link_force(
 
 @compiled()
 def block_row(w: float, p: Plain) -> Array:
-    """Stiffness, damping and force of the linear supports at speed w."""
+    """Return the stiffness, damping and force of the linear supports at speed w."""
     place = (w - p.block_low) / p.block_step
     index = min(max(int(place), 0), p.block_table.shape[0] - 1)
     s = place - index
@@ -385,7 +385,7 @@ def block_row(w: float, p: Plain) -> Array:
 
 @compiled()
 def explicit_force(t: float, phi: float, w: float, alpha: float, p: Plain) -> Array:
-    """Forces (n,) that do not depend on the motion: constant ones, unbalance, loads."""
+    """Return the forces (n,) that do not depend on the motion: constant ones, unbalance, loads."""
     force = p.constant.copy()
     cos, sin = math.cos(phi), math.sin(phi)
     for k in range(p.unbalance_start.size):
@@ -404,7 +404,7 @@ def explicit_force(t: float, phi: float, w: float, alpha: float, p: Plain) -> Ar
 
 @compiled()
 def force_on(t: float, q: Array, v: Array, phi: float, w: float, alpha: float, p: Plain) -> Array:
-    """All forces (n,) but the inertia's: M q'' is this."""
+    """Return all forces (n,) but the inertia's: M q'' is this."""
     force = explicit_force(t, phi, w, alpha, p)
     force -= p.damping @ v + p.stiffness @ q
     if p.gyroscopic.shape[0] > 0:
@@ -486,7 +486,7 @@ def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[A
 
 @compiled()
 def least_film(q: Array, v: Array, p: Plain) -> float:
-    """Smallest of the links' films less what they may not fall below [m]."""
+    """Return the smallest of the links' films less what they may not fall below [m]."""
     least = math.inf
     for k in range(p.links.shape[0]):
         if p.links[k, 0] != STOP:
@@ -499,7 +499,7 @@ def least_film(q: Array, v: Array, p: Plain) -> float:
 def translation_columns(
     size: int, places: Sequence[tuple[int, int]], amounts: Sequence[complex]
 ) -> ComplexArray:
-    """Turning forces (size,): amount (1, -i) on x and y of each place."""
+    """Return the turning forces (size,): amount (1, -i) on x and y of each place."""
     found = np.zeros(size, dtype=complex)
     for (x, y), amount in zip(places, amounts, strict=True):
         found[x] += amount

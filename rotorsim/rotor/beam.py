@@ -128,7 +128,7 @@ class Beam:
         return start, start + section.length
 
     def mesh(self, places: Sequence[float] = (), refinement: int = 1) -> Array:
-        """Nodes (n,) [m] from the left end: section ends, discs, `places`, and between them.
+        """Return nodes (n,) [m] from the left end: section ends, discs, `places`, and between them.
 
         A coupling has two nodes at its place.
 
@@ -163,7 +163,7 @@ class Beam:
         return np.array(sorted([*nodes, *double]))
 
     def at(self, z: Array, layer_section: Section) -> tuple[Array, Array]:
-        """Inner and outer radius (n,) [m] of a section at places z (n,) [m]."""
+        """Return the inner and outer radius (n,) [m] of a section at places z (n,) [m]."""
         start, stop = self.span(layer_section)
         t = (z - start) / (stop - start)
         inner = layer_section.inner_diameter
@@ -272,7 +272,7 @@ def beam_rotor(beam: Beam, places: Sequence[float] = (), refinement: int = 1) ->
 
 
 def _modal(mass: Array, stiffness: Array, ratio: float) -> Array:
-    """Damping matrix of one plane that gives every free mode a damping ratio."""
+    """Return the damping matrix of one plane that gives every free mode a damping ratio."""
     from scipy.linalg import eigh
 
     try:
@@ -288,7 +288,7 @@ def _modal(mass: Array, stiffness: Array, ratio: float) -> Array:
 
 
 def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Array, Array, Array]:
-    """Matrices (4, 4) of the element from `left` to `right` [m], in one plane.
+    """Return the matrices (4, 4) of the element from `left` to `right` [m], in one plane.
 
     Returns translation, rotation : Consistent mass of the translation and of the rotation (rotary
         inertia) [kg, kg m, kg m^2].
@@ -357,7 +357,7 @@ def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Arr
 
 @on_one_blas_thread
 def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: int) -> float:
-    """Largest relative change of natural frequencies when every element is halved.
+    """Return the largest relative change of natural frequencies when every element is halved.
 
     places : Nodes with a spring to ground each [m].
     stiffness : Of each spring [N/m].
@@ -421,23 +421,23 @@ class _BothPlanes:
         return np.asarray(np.kron(eye, x), float), np.asarray(np.kron(eye, y), float)
 
     def alike(self, plane: Array) -> Array:
-        """Same matrix in both planes."""
+        """Put the same matrix into both planes."""
         x, y = self.planes
         return x @ plane @ x.T + y @ plane @ y.T
 
     def crossed(self, plane: Array) -> Array:
-        """Plus the matrix in the rows of x on y, minus it in those of y on x."""
+        """Put the matrix into the rows of x on y, minus it into those of y on x."""
         x, y = self.planes
         return x @ plane @ y.T - y @ plane @ x.T
 
 
 def _nearest_node(nodes: Array, place: float) -> int:
-    """Number of the node at `place` [m]."""
+    """Return the number of the node at `place` [m]."""
     return int(np.abs(nodes - place).argmin())
 
 
 def _merged(places: Sequence[float], length: float) -> list[float]:
-    """Ascending places, those that nearly coincide once."""
+    """Return the ascending places, those that nearly coincide once."""
     found: list[float] = []
     for place in sorted(places):
         if not found or place - found[-1] > _SAME_PLACE * length:

@@ -180,7 +180,7 @@ class Rotor:
         return tuple((node.name, unknown) for node in self.nodes for unknown in node.unknowns)
 
     def translation(self, along: Sequence[float]) -> Array:
-        """Displacements (n,) of a translation of the whole rotor by `along` (x, y) [m]."""
+        """Return displacements (n,) of a translation of the whole rotor by `along` (x, y) [m]."""
         result = np.zeros(self.size)
         result[self.first_unknown], result[self.first_unknown + 1] = along
         return result
@@ -197,7 +197,7 @@ class Rotor:
         return self.parameters["mass"] if self.kind == "rigid" else None
 
     def node(self, place: int | str) -> int:
-        """Number of a node given by its number or its name.
+        """Return the number of a node given by its number or its name.
 
         Raises InputError: There is no such node; the message lists the names.
         """
@@ -211,7 +211,7 @@ class Rotor:
         raise InputError(f"nodes go from 0 to {len(names) - 1}{known}", key="node", value=place)
 
     def unbalance_force(self, speed: ArrayLike) -> ComplexArray:
-        """Complex amplitudes (..., n) [N] of the unbalance forces, f = Re(F exp(i Omega t)).
+        """Return complex amplitudes (..., n) [N] of the unbalance forces, f = Re(F exp(i Omega t)).
 
         speed : [rad/s]
 
@@ -245,7 +245,7 @@ class Rotor:
     def rigid(
         cls, mass: Mass, unbalance: Unbalance = 0.0, phase: Annotated[float, NOT_IN_FILES] = 0.0
     ) -> Rotor:
-        """Rigid symmetric shaft on two identical bearings, per bearing (Dal Eq. 21).
+        """Return the rigid symmetric shaft on two identical bearings, per bearing (Dal Eq. 21).
 
         mass : Per bearing [kg].
         unbalance : Mass times radius, per bearing [kg m].
@@ -267,7 +267,7 @@ class Rotor:
         polar_inertia: float,
         bearings: tuple[float, float],
     ) -> Rotor:
-        """Rigid body on two bearings; its nodes are the two journals.
+        """Return the rigid body on two bearings; its nodes are the two journals.
 
         mass : Of the whole rotor [kg].
         transverse_inertia, polar_inertia : About the centre of mass [kg m^2].
@@ -303,7 +303,7 @@ class Rotor:
         disc_damping: Damping = 0.0,
         unbalance: Unbalance = 0.0,
     ) -> Rotor:
-        """Disc at mid-span of a flexible shaft on two identical bearings, one half of it.
+        """Return disc at mid-span of a flexible shaft on two identical bearings, one half of it.
 
         The nodes are ``journal`` and ``disc``.
 
@@ -347,7 +347,7 @@ class Rotor:
         unknowns_per_node: int = 4,
         source: str | None = None,
     ) -> Rotor:
-        """Rotor of matrices made elsewhere, its unknowns grouped by node.
+        """Return the rotor of matrices made elsewhere, its unknowns grouped by node.
 
         mass, stiffness, damping, gyroscopic, circulatory : (n, n) arrays. See `Rotor`; what is left
             out is zero. The mass matrix must be positive definite.
@@ -385,7 +385,7 @@ def _kron(first: Array, second: Array) -> Array:
 
 
 def _real(value: ArrayLike, label: str, source: str | None) -> Array:
-    """Real, read-only copy of a matrix; an imaginary part that is exactly zero goes."""
+    """Return the real, read-only copy of a matrix; an imaginary part that is exactly zero goes."""
     array: NDArray[Any] = np.asarray(value)
     if np.iscomplexobj(array):
         imaginary = np.imag(array)

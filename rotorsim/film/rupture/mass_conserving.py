@@ -158,7 +158,7 @@ def _solve(
     start: Booleans | None = None,
     frozen: Booleans | None = None,
 ) -> tuple[FilmOperator, PressureSolution]:
-    """Pressure and liquid fraction of the operator's film.
+    """Return the pressure and liquid fraction of the operator's film.
 
     Returns FilmOperator: With the Couette flow scaled by the liquid fraction that it carries.
     Returns PressureSolution: Its `liquid` is the liquid fraction.
@@ -302,7 +302,7 @@ def _fill(
     band,
     right,
 ):
-    """Rows: inflow into each cell with its sign turned, as right-hand sides are."""
+    """Return the rows: inflow into each cell with its sign turned, as right-hand sides are."""
     n, m = full.shape
     for c in range(order.size):
         i = order[c]

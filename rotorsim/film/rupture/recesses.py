@@ -53,7 +53,7 @@ class Recesses:
 
     @classmethod
     def of(cls, bearing: Bearing, mesh: FilmMesh, oil: Lubricant, supplied: float) -> Recesses:
-        """Recesses of a bearing on its mesh; `supplied` is the supply temperature [K]."""
+        """Return recesses of a bearing on its mesh; `supplied` is the supply temperature [K]."""
         numbers = [k for k, groove in enumerate(bearing.grooves) if groove.restrictor is not None]
         grooves = [bearing.grooves[k] for k in numbers]
         cells = mesh.supply == np.array(numbers)[:, None, None]
@@ -109,7 +109,7 @@ class Recesses:
         )  # fmt: skip
 
     def taken(self, operator: FilmOperator, solution: PressureSolution, pressure: Array) -> Array:
-        """What the film takes from each recess [m3/s], (g,).
+        """Return what the film takes from each recess [m3/s], (g,).
 
         operator : As solved: its Couette flow is what the film carries.
         """

@@ -62,7 +62,7 @@ class Reynolds(ConnectedFilm):
 
 
 def _coarse_guess(operator: FilmOperator, source: Array) -> Booleans:
-    """Full cells of the same film on a mesh twice as coarse, itself begun on a coarser one.
+    """Return full cells of the same film on a mesh twice as coarse, itself begun on a coarser one.
 
     The active set moves by about a cell a step, so that without this the number of steps would grow
     with the mesh.
@@ -172,7 +172,7 @@ def _on_frozen_set(operator: FilmOperator, source: Array, full: Booleans) -> Pre
 
 @kernel
 def _update_set(conductance, interior, source, pressure, full, allowed, tolerance, update):
-    """Next guess of the full cells; returns how many changed."""
+    """Guess the full cells anew; return how many changed."""
     n, m = full.shape
     changed = 0
     for i in range(n):

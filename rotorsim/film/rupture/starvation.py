@@ -53,7 +53,7 @@ class OilSupply:
         return np.where((self._leading >= 0) & starved[self._leading], 0.0, 1.0)
 
     def carried(self, fractions: Array) -> Array:
-        """Liquid fraction on each column's first face where oil enters there, (n,)."""
+        """Return the liquid fraction on each column's first face where oil enters there, (n,)."""
         return np.where(self._leading >= 0, fractions[self._leading], 1.0)
 
     def balance(self, operator: FilmOperator, full: Booleans) -> tuple[Array, Array, Array]:
