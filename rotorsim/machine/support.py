@@ -357,7 +357,7 @@ class Turned(Support):
 
 
 def _turning(unknowns: Sequence[str], angle: float) -> Array:
-    """Return the matrix from unknowns to those of a frame turned by `angle` [rad] from x towards y."""
+    """Return the matrix from unknowns to those of a frame turned by `angle` [rad] (x to y)."""
     turn = np.eye(len(unknowns))
     c, s = np.cos(angle), np.sin(angle)
     for first, second in (("x", "y"), ("theta_x", "theta_y"), ("housing_x", "housing_y")):
