@@ -1,61 +1,30 @@
-"""Integration of the rotor on its film with SciPy, piece by piece."""
+"""Orbit of one journal in time: its machine of one film, integrated piece by piece.
+
+The equations, the compiled integrator and SciPy's are those of any machine
+(`rotorsim.orbit.system`, `march`, `motion`).
+"""
 
 from __future__ import annotations
 
-import itertools
 import math
-import warnings
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
-from ..arrays import Array
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
-from ..model.loads import BaseMotion, HarmonicForce
+from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
+from ..rotor import Rotor
 from .analysis import recognise
-from .equations import (
-    FilmSeries,
-    Rates,
-    Tangent,
-    initial_state,
-    load_on_rotor,
-    pack_loads,
-    right_hand_side,
-)
 from .film_force import SolvedFilmForce
-from .forces import ActuatedFilm, LinearForce, find_equilibrium
+from .forces import ActuatedFilm, CompilableForce, LinearForce, find_equilibrium
+from .kernels import film_force_series
+from .motion import CHUNK_REVOLUTIONS, Motion, MotionProblem, pieces_of
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
-from .problem import Method, OrbitProblem
-
-_CHUNK_REVOLUTIONS = 32
-
-
-@dataclass(frozen=True)
-class _Solution:
-    """One integrated piece: SciPy's status, and where the film broke down (t, x, y)."""
-
-    t: Array
-    y: Array
-    status: int
-    message: str = ""
-    contact: tuple[float, float, float] | None = None
-
-
-@dataclass(frozen=True)
-class _Run:
-    """What stays the same from piece to piece."""
-
-    problem: OrbitProblem
-    equilibrium: tuple[float, float]
-    rates: Rates
-    film: FilmSeries
-    tangent: Tangent | None
-    tolerance: Array
-    contact: Callable[[float, Array], float]
+from .problem import OrbitProblem
+from .system import Harmonic, Link, MotionSystem, translation_columns
 
 
 def simulate(
@@ -88,9 +57,7 @@ def simulate(
             if old.t.size and old.min_film.min() < least:
                 at = int(np.argmin(old.min_film))
                 least = float(old.min_film[at])
-                dropped = OrbitEvent(
-                    "minimum_film", float(old.t[at]), float(old.x[at]), float(old.y[at])
-                )
+                dropped = _event("minimum_film", old, at)
     orbit = concatenate(pieces)
     if dropped is not None:
         orbit = replace(orbit, events=(dropped, *orbit.events))
@@ -101,12 +68,12 @@ def simulate(
     events = orbit.events
     if found.steady_from is not None:
         at = min(found.steady_from, orbit.t.size - 1)
-        events += (
-            OrbitEvent(
-                found.status.value, float(orbit.t[at]), float(orbit.x[at]), float(orbit.y[at])
-            ),
-        )
+        events += (_event(found.status.value, orbit, at),)
     return replace(orbit, status=found.status, message=message, events=events)
+
+
+def _event(name: str, orbit: Orbit, at: int) -> OrbitEvent:
+    return OrbitEvent(name, float(orbit.t[at]), float(orbit.x[at]), float(orbit.y[at]))
 
 
 def _turns(pieces: Iterable[Orbit]) -> float:
@@ -115,223 +82,190 @@ def _turns(pieces: Iterable[Orbit]) -> float:
 
 
 def _simulate_pieces(
-    problem: OrbitProblem, revolutions: int = _CHUNK_REVOLUTIONS
+    problem: OrbitProblem, revolutions: int = CHUNK_REVOLUTIONS
 ) -> Iterator[Orbit]:
-    """Integrate piece by piece, so that a long run can be streamed, thinned or written out.
-
-    revolutions : Of the shaft in each piece.
-    Yields Orbit : Status ``running`` but for the last.
-    """
-    run, state = _prepare(problem)
-    edges = _edges(problem, revolutions)
-    samples = problem.samples_per_revolution
-    # a run that ends on a sample keeps it, rounding or not
-    count = math.floor(problem.schedule.revolutions * samples + 1e-9) + 1
-    done = 0
-    for piece, (start, stop) in enumerate(itertools.pairwise(edges)):
-        last = piece == len(edges) - 2
-        upto = count if last else _samples_before(problem, stop)
-        angles = 2.0 * np.pi * np.arange(done, upto) / samples
-        times = np.clip(problem.schedule.time_at(angles), start, stop)
-        done = upto
-        ends = times if times.size and times[-1] >= stop else np.append(times, stop)
-        solution = _solve(run, state, (start, stop), ends)
-        orbit = _piece(run, solution, angles)
-        if orbit.status is not OrbitStatus.COMPLETED or last:
-            yield orbit
-            return
-        yield replace(orbit, status=OrbitStatus.RUNNING)
-        state = solution.y[:, -1]
+    """Integrate piece by piece: status ``running`` but for the last one."""
+    equilibrium = _equilibrium(problem)
+    motion, force = motion_problem(problem, equilibrium), problem.force
+    form = None
+    if isinstance(force, CompilableForce):
+        form = force.compiled(min(problem.schedule.speeds), max(problem.schedule.speeds))
+    for piece in pieces_of(motion, revolutions):
+        link = motion.system.links[0]
+        if form is None:
+            film = motion.system.link_forces(link, piece.q, piece.v, piece.speed).reshape(-1, 2)
+        else:
+            rows = np.ascontiguousarray(link.motion(piece.q, piece.v, piece.speed))
+            film = film_force_series(form.kind, rows, form.numbers, form.table)
+        yield _orbit(problem, piece, film, equilibrium)
 
 
-def _solve(run: _Run, state: Array, span: tuple[float, float], times: Array) -> _Solution:
-    """Integrate one piece; an integrator that gives up gives back what it has."""
-    problem = run.problem
-    failed = _Solution(np.zeros(0), np.zeros((state.size, 0)), -1)
-    with warnings.catch_warnings(), np.errstate(all="ignore"):
-        warnings.simplefilter("ignore")  # SciPy says on stderr what the status says as well
-        implicit: dict[str, Any] = (
-            {} if problem.method is Method.DOP853 else {"jac": _jacobian(run)}
-        )
-        try:
-            found = solve_ivp(
-                run.rates,
-                span,
-                state,
-                method=problem.method.value,
-                t_eval=times,
-                events=run.contact if problem.stop_at_contact else None,
-                rtol=problem.tolerance,
-                atol=run.tolerance,
-                **implicit,
-            )
-        except InputError:
-            raise
-        except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-            return replace(failed, message=f"{error}.")
-    if found.status == 1:
-        when, where = float(found.t_events[0][0]), found.y_events[0][0]
-        return _Solution(found.t, found.y, 1, contact=(when, float(where[0]), float(where[1])))
-    # the list is empty where the first step already fails
-    y = found.y if len(found.t) else failed.y
-    good = int(np.sum(np.all(np.isfinite(y), axis=0)))
-    status = found.status if good == y.shape[1] else -1
-    return _Solution(np.asarray(found.t)[:good], y[:, :good], status, str(found.message))
-
-
-def _jacobian(run: _Run) -> Callable[[float, Array], Array]:
-    """Return derivatives of the rates by differences, in steps that the film's stiffness shows in.
-
-    The integrators' own steps follow the size of each state: that of a velocity at rest is so
-    small that the force does not change beyond rounding. Newton's method then fails close to the
-    bush, and the run crawls.
-    """
-    problem, size = run.problem, run.problem.rotor.mass.shape[0]
-    least = np.full(run.tolerance.size, 1e-6)
-    least[: 2 * size] *= problem.force.radial_clearance
-    least[:size] *= 1e-2
-    least[size : 2 * size] *= max(problem.schedule.speeds)
-
-    def jacobian(t: float, state: Array) -> Array:
-        rates = run.rates if run.tangent is None else run.tangent(t, state)
-        before = np.array(rates(t, state))
-        steps = least.copy()
-        steps[2 * size :] *= np.maximum(np.abs(state[2 * size :]), 1.0)
-        columns = []
-        for index, step in enumerate(steps):
-            moved = state.copy()
-            moved[index] += step
-            columns.append((rates(t, moved) - before) / (moved[index] - state[index]))
-        return np.column_stack(columns)
-
-    return jacobian
-
-
-def _prepare(problem: OrbitProblem) -> tuple[_Run, Array]:
-    speed = problem.schedule.speeds[0]
-    force, rotor = problem.force, problem.rotor
+def _equilibrium(problem: OrbitProblem) -> tuple[float, float]:
+    """Return the position from which the start is measured [m]."""
+    force, speed = problem.force, problem.schedule.speeds[0]
     if problem.equilibrium is not None:
-        equilibrium = problem.equilibrium
-    elif isinstance(force, LinearForce):
-        equilibrium = force.position(speed)
-    elif isinstance(force, SolvedFilmForce) and force.pads:
-        equilibrium = float(force.rest[0]), float(force.rest[1])
-    else:
-        equilibrium = find_equilibrium(force, problem.static_load, speed)
-    state = initial_state(problem, equilibrium)
-    clearance, least = force.radial_clearance, problem.minimum_film
-    size = rotor.mass.shape[0]
-    tolerance = np.full(state.size, 1e-3 * problem.tolerance * clearance)
+        return problem.equilibrium
+    if isinstance(force, LinearForce):
+        return force.position(speed)
     if isinstance(force, SolvedFilmForce) and force.pads:
-        tolerance[size - len(force.pads) : size] *= force.scales[2:] / clearance
-    tolerance[size : 2 * size] = tolerance[:size] * max(problem.schedule.speeds)
+        return float(force.rest[0]), float(force.rest[1])
+    return find_equilibrium(force, problem.static_load, speed)
 
-    plain = problem.bearing is None or (problem.bearing.is_plain and problem.bearing.is_symmetric)
 
-    def contact(_t: float, s: Array) -> float:
-        if plain:
-            return clearance - least - math.hypot(s[0], s[1])
-        return float(problem.film_at(s[None, :size])[0]) - least
+def motion_problem(problem: OrbitProblem, equilibrium: tuple[float, float]) -> MotionProblem:
+    """Put the rotor on its one film together as a machine in time.
 
-    contact.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
-    contact.direction = -1.0  # pyright: ignore[reportFunctionMemberAccess]
-    if problem.stop_at_contact and contact(0.0, state) <= 0.0:
+    Raises InputError: The start is outside the clearance, or of a wrong size.
+    """
+    rotor, force, size = problem.rotor, problem.force, problem.rotor.size
+    pads = tuple(range(size - len(problem.pads), size))
+    places = [(int(x), int(x) + 1) for x in rotor.first_unknown]
+    unbalance = translation_columns(size, places, [complex(u) for u in rotor.unbalance])
+    scale = np.full(size, 0.1 * force.radial_clearance)
+    if isinstance(force, SolvedFilmForce) and pads:
+        scale[list(pads)] = 0.1 * force.scales[2:]
+    bore, least = problem.bearing, problem.minimum_film
+    circle = bore is None or (bore.is_plain and bore.is_symmetric)
+
+    def film_left(q: Array) -> Array:
+        return problem.film_at(q) - least
+
+    stops = problem.stop_at_contact
+    system = MotionSystem(
+        rotor.mass, rotor.damping, rotor.gyroscopic, rotor.stiffness, rotor.circulatory,
+        _static_load(problem), scale, np.eye(size), np.zeros(size),
+        unbalance=((-math.inf, unbalance),) if unbalance.any() else (),
+        links=(
+            Link("film", force, (0, 1), pads=pads,
+                 minimum_film=least if stops and circle else -math.inf),
+        ),
+        loads=_harmonics(problem.loads, rotor),
+    )  # fmt: skip
+    start, velocity = _start(problem, equilibrium)
+    if stops and film_left(start[None])[0] <= 0.0:
         raise InputError(
             "the journal must start inside the clearance circle "
-            f"(film above {least:g} m, clearance {clearance:g} m)",
+            f"(film above {least:g} m, clearance {force.radial_clearance:g} m)",
             key="orbit.initial_displacement",
             value=problem.initial_displacement,
         )
-    rates, film, tangent = right_hand_side(problem)
-    return _Run(problem, equilibrium, rates, film, tangent, tolerance, contact), state
+    return MotionProblem(
+        system, problem.schedule, start, velocity, start, (), problem.samples_per_revolution,
+        problem.tolerance, contact=film_left if stops and not circle else None,
+    )  # fmt: skip
 
 
-def _actuator_force(problem: OrbitProblem, motion: Array, y: Array) -> Array:
-    """Force of the actuator (n, 2) along (n, 5) motion, states y (k, n); zeros without one."""
+def _static_load(problem: OrbitProblem) -> Array:
+    """Share the static load out over the nodes as their masses, (n,)."""
+    rotor = problem.rotor
+    return rotor.mass @ rotor.translation(problem.static_load) / rotor.total_mass
+
+
+def _start(problem: OrbitProblem, equilibrium: tuple[float, float]) -> tuple[Array, Array]:
+    """Return displacements and velocities (n,): nodes hang where journal and load put them."""
+    rotor, size = problem.rotor, problem.rotor.size
+    if problem.initial_state is not None:
+        state = np.array(problem.initial_state, dtype=float)
+        if state.shape != (2 * size,):
+            raise InputError(
+                f"must have {2 * size} entries", key="orbit.initial_state", value=state.shape
+            )
+        return state[:size], state[size:]
+    q, v = np.zeros((2, size))
+    q[:2] = np.asarray(equilibrium) + problem.initial_displacement
+    v[:2] = problem.initial_velocity
+    own = slice(2, size - len(problem.pads))
+    if own.stop > 2:
+        pull = _static_load(problem)[own] - rotor.stiffness[own, :2] @ q[:2]
+        q[own] = np.linalg.lstsq(rotor.stiffness[own, own], pull, rcond=None)[0]
+    if isinstance(problem.force, SolvedFilmForce):
+        q[own.stop :] = problem.force.rest[2:]
+    return q, v
+
+
+def _harmonics(loads: Sequence[Load], rotor: Rotor) -> tuple[Harmonic, ...]:
+    """Return the loads as forces that turn at one frequency each, on all unknowns [N]."""
+
+    def at_node(node: int, force: ComplexArray) -> ComplexArray:
+        if not 0 <= node < len(rotor.nodes):
+            last = len(rotor.nodes) - 1
+            raise InputError(f"must be from 0 to {last}", key="orbit.load.node", value=node)
+        amplitude = np.zeros(rotor.size, dtype=complex)
+        first = int(rotor.first_unknown[node])
+        amplitude[first : first + 2] = force
+        return amplitude
+
+    def inertia(force: ComplexArray) -> ComplexArray:
+        both = (rotor.translation((part[0], part[1])) for part in (force.real, force.imag))
+        real, imaginary = (rotor.mass @ along for along in both)
+        return real + 1j * imaginary
+
+    def one(load: Load) -> Harmonic:
+        match load:
+            case StepForce():
+                force = np.asarray(load.force, dtype=complex)
+                return Harmonic(at_node(load.node, force), 0.0, load.start, load.stop)
+            case HarmonicForce():
+                force = np.asarray(load.force) * np.exp(1j * np.asarray(load.phase))
+                return Harmonic(at_node(load.node, force), load.frequency, load.start, load.stop)
+            case BaseMotion():
+                base = np.asarray(load.displacement) * np.exp(1j * np.asarray(load.phase))
+                base = np.asarray(base * load.frequency**2, dtype=complex)
+                return Harmonic(inertia(base), load.frequency, load.start, load.stop)
+            case BaseShock():
+                # half a sine: sin w (t - start) = Re(-i exp(-i w start) exp(i w t))
+                frequency = math.pi / load.duration
+                turned = -1j * np.exp(-1j * frequency * load.start)
+                force = inertia(-np.asarray(load.acceleration) * turned)
+                return Harmonic(force, frequency, load.start, load.start + load.duration)
+
+    return tuple(one(load) for load in loads)
+
+
+def load_on_rotor(loads: Sequence[Load], rotor: Rotor, t: Array) -> Array:
+    """Return the sum of the loads over all nodes (n, 2) [N] at times t (n,)."""
+    total = np.zeros((np.size(t), 2))
+    for load in _harmonics(loads, rotor):
+        whole = np.array([load.amplitude[rotor.first_unknown + axis].sum() for axis in (0, 1)])
+        acts = (load.start <= t) & (t < load.stop)
+        total += np.real(np.exp(1j * load.frequency * t)[:, None] * whole) * acts[:, None]
+    return total
+
+
+def _orbit(
+    problem: OrbitProblem, piece: Motion, film: Array, equilibrium: tuple[float, float]
+) -> Orbit:
+    """Return one piece's samples as an orbit; `film` is the force on the journal (m, 2) [N]."""
+    q, v = piece.q, piece.v
+    x, y, vx, vy = (np.ascontiguousarray(one) for one in (q[:, 0], q[:, 1], v[:, 0], v[:, 1]))
+    actuator = np.zeros_like(film)
     if isinstance(problem.force, ActuatedFilm):
-        return problem.force.actuator_force(*motion[:, :4].T)
-    if problem.controller is None:
-        return np.zeros((len(motion), 2))
-    size = problem.rotor.mass.shape[0]
-    away = motion[:, :4] - np.array([*problem.controller.reference, 0.0, 0.0])
-    return problem.controller.force(y[2 * size :].T, away)
-
-
-def _edges(problem: OrbitProblem, revolutions: int) -> list[float]:
-    """List where pieces end [s]: at whole revolutions and at corners of loads and speed."""
-    schedule = problem.schedule
-    turns = np.arange(0.0, schedule.revolutions, max(revolutions, 1))
-    edges = {float(t) for t in schedule.time_at(2.0 * np.pi * turns)} | set(schedule.times)
-    _, times = pack_loads(problem.loads, problem.rotor)
-    edges |= {float(t) for t in times[:, 1:3].ravel() if 0.0 < t < schedule.duration}
-    ordered = sorted(edges)
-    least = 1e-9 * schedule.duration
-    kept = [ordered[0]]
-    kept += [t for t in ordered[1:] if t - kept[-1] > least]
-    kept[-1] = schedule.duration
-    return kept
-
-
-def _samples_before(problem: OrbitProblem, t: float) -> int:
-    """Count samples earlier than t (a sample on the edge belongs to the next piece)."""
-    turns = problem.schedule.angle_at(t) / (2.0 * np.pi) * problem.samples_per_revolution
-    return math.ceil(float(turns) - 1e-9)
-
-
-def _piece(run: _Run, solution: _Solution, angles: Array) -> Orbit:
-    """Return one piece's samples as an orbit."""
-    problem = run.problem
-    size = problem.rotor.mass.shape[0]
-    count = min(angles.size, solution.t.size)
-    t, y = solution.t[:count], solution.y[:, :count]
-    speed = problem.schedule.speed_at(t)
-    motion = np.column_stack([y[0], y[1], y[size], y[size + 1], speed])
-    film = run.film(motion, y.T)
-    actuator = _actuator_force(problem, motion, y)
-    if isinstance(problem.force, ActuatedFilm):
+        actuator = problem.force.actuator_force(x, y, vx, vy)
         film = film - actuator
-    status, message, events = OrbitStatus.COMPLETED, "", ()
-    if solution.contact is not None:
-        when, x, y_end = solution.contact
-        status = OrbitStatus.TOUCH_DOWN
+    message = piece.message
+    if piece.status is OrbitStatus.TOUCH_DOWN:
+        when = piece.events[0].time
         message = (
             f"film below {problem.minimum_film * 1e6:.3g} µm after {when:.6g} s "
             f"({problem.schedule.angle_at(when) / (2.0 * np.pi):.4g} revolutions)"
         )
         if isinstance(problem.force, LinearForce):
             message += "; linear coefficients hold for small motions only"
-        events = (OrbitEvent("touch_down", when, x, y_end),)
-    elif solution.status < 0:
-        status = OrbitStatus.INTEGRATION_FAILED
-        message = f"{solution.message} Try another method, or a looser tolerance."
+    elif piece.status is OrbitStatus.INTEGRATION_FAILED:
+        message = f"{message.rstrip('.')}. Try a looser tolerance."
     return Orbit(
-        t=t,
-        x=y[0].copy(),
-        y=y[1].copy(),
-        vx=y[size].copy(),
-        vy=y[size + 1].copy(),
-        speed=speed,
-        angle=angles[:count],
-        fx=film[:, 0],
-        fy=film[:, 1],
-        load=load_on_rotor(problem.loads, problem.rotor, t),
-        actuator_force=actuator,
-        displacements=np.ascontiguousarray(y[:size].T),
-        min_film=problem.film_at(y[:size].T),
-        boundary=problem.boundary,
+        t=piece.t, x=x, y=y, vx=vx, vy=vy, speed=piece.speed, angle=piece.angle,
+        fx=film[:, 0], fy=film[:, 1], load=load_on_rotor(problem.loads, problem.rotor, piece.t),
+        actuator_force=actuator, displacements=np.ascontiguousarray(q),
+        min_film=problem.film_at(q), boundary=problem.boundary,
         samples_per_revolution=problem.samples_per_revolution,
-        radial_clearance=problem.force.radial_clearance,
-        equilibrium=run.equilibrium,
-        force_model=problem.force.name,
-        thermal_model=problem.thermal_model,
-        status=status,
-        message=message,
-        events=events,
+        radial_clearance=problem.force.radial_clearance, equilibrium=equilibrium,
+        force_model=problem.force.name, thermal_model=problem.thermal_model,
+        status=piece.status, message=message, events=piece.events,
         forced=bool(np.any(problem.rotor.unbalance)) or bool(problem.loads),
         forcing=tuple(
             load.frequency for load in problem.loads if isinstance(load, HarmonicForce | BaseMotion)
         ),
-        kind=problem.kind,
-        note=problem.note,
-        pad_velocity=np.ascontiguousarray(y[2 * size - len(problem.pads) : 2 * size].T),
-    )
+        kind=problem.kind, note=problem.note,
+        pad_velocity=np.ascontiguousarray(v[:, q.shape[1] - len(problem.pads) :]),
+    )  # fmt: skip

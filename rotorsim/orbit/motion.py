@@ -15,12 +15,14 @@ import numpy as np
 from ..arrays import Array, Indices
 from ..errors import InputError
 from ..threads import on_one_blas_thread
+from .kernels import shaft
 from .march import DONE, TOUCHED, march, repeat
 from .orbit import Orbit, OrbitEvent, OrbitStatus
 from .problem import SpeedSchedule
 from .system import Link, MotionSystem, Plain, derivatives, force_on
 
-_CHUNK_REVOLUTIONS = 32
+CHUNK_REVOLUTIONS = 32
+"""Of the shaft in one piece of a run."""
 _TOLERANCE = 1e-5
 _SOLVED_TOLERANCE = 1e-4
 """Where a film is solved at each step."""
@@ -82,6 +84,8 @@ class MotionProblem:
     kind, thermal_model, note : Labels.
     reduction_error : Largest relative change of an eigenvalue by the reduction, up to the highest
         excitation.
+    contact : Displacements (m, n) to the film (m,) that is left before the run ends [m]; None: that
+        of round journals in round films.
     """
 
     system: MotionSystem
@@ -97,6 +101,19 @@ class MotionProblem:
     note: str = ""
     reduction_error: float = 0.0
     forcing: tuple[float, ...] = ()
+    contact: Callable[[Array], Array] | None = None
+
+    def film_left(self, q: Array) -> Array:
+        """Return the film (m,) that is left at displacements (m, n) before the run ends [m]."""
+        if self.contact is not None:
+            return self.contact(q)
+        left = np.full(len(q), math.inf)
+        for link in self.system.links:
+            if link.film:
+                x, y = link.motion(q, 0.0 * q, np.zeros(len(q)))[:, :2].T
+                room = link.force.radial_clearance - link.minimum_film
+                left = np.minimum(left, room - np.hypot(x, y))
+        return left
 
     @property
     def schedule(self) -> SpeedSchedule:
@@ -303,7 +320,7 @@ def simulate_motion(
     """
     pieces: deque[Motion] = deque()
     turns = 0.0
-    for piece in _pieces(problem):
+    for piece in pieces_of(problem):
         if consume is not None:
             consume(piece)
         pieces.append(piece)
@@ -318,13 +335,14 @@ def simulate_motion(
     return replace(pieces[-1], **joined)
 
 
-def _pieces(problem: MotionProblem) -> Iterator[Motion]:
+def pieces_of(problem: MotionProblem, revolutions: int = CHUNK_REVOLUTIONS) -> Iterator[Motion]:
+    """Integrate piece by piece, of some revolutions each: status ``running`` but for the last."""
     if isinstance(problem.drive, TorqueDrive):
         yield from _driven(problem, problem.drive)
         return
     schedule = problem.drive
     samples = problem.samples_per_revolution
-    edges = _edges(problem, schedule)
+    edges = _edges(problem, schedule, revolutions)
     count = math.floor(schedule.revolutions * samples + 1e-9) + 1
     q, v, done = problem.start, problem.velocity, 0
     if problem.system.linear and schedule.is_constant:
@@ -339,25 +357,25 @@ def _pieces(problem: MotionProblem) -> Iterator[Motion]:
         upto = count if last else math.ceil(turned - 1e-9)
         angles = 2.0 * np.pi * np.arange(done, upto) / samples
         times = np.clip(schedule.time_at(angles), start, stop)
-        found, status, message, q, v = advance(q, v, start, stop, times)
+        found, status, message, q, v, *events = advance(q, v, start, stop, times)
         reached = found[0].shape[0]
         done += reached
         ended = last or status is not OrbitStatus.COMPLETED
         yield Motion(
             times[:reached], schedule.speed_at(times[:reached]), angles[:reached], *found, problem,
-            status if ended else OrbitStatus.RUNNING, message,
+            status if ended else OrbitStatus.RUNNING, message, tuple(events),
         )  # fmt: skip
         if ended:
             return
 
 
-_Answer = tuple[tuple[Array, Array], OrbitStatus, str, Array, Array]
+_Answer = tuple[tuple[Array, Array], OrbitStatus, str, Array, Array, *tuple[OrbitEvent, ...]]
 _Advance = Callable[[Array, Array, float, float, Array], _Answer]
 
 
-def _edges(problem: MotionProblem, schedule: SpeedSchedule) -> list[float]:
+def _edges(problem: MotionProblem, schedule: SpeedSchedule, revolutions: int) -> list[float]:
     """Return where pieces end [s]: after some revolutions, and at corners of speed and loads."""
-    turns = np.arange(0.0, schedule.revolutions, _CHUNK_REVOLUTIONS)
+    turns = np.arange(0.0, schedule.revolutions, max(revolutions, 1))
     corners = {start for start, _ in problem.system.unbalance}
     corners |= {time for load in problem.system.loads for time in (load.start, load.stop)}
     edges = {float(t) for t in schedule.time_at(2.0 * np.pi * turns)} | set(schedule.times)
@@ -369,15 +387,17 @@ def _edges(problem: MotionProblem, schedule: SpeedSchedule) -> list[float]:
     return kept
 
 
-def _touched(problem: MotionProblem, t: float, q: Array) -> str:
+def _touched(problem: MotionProblem, t: float, q: Array) -> tuple[str, OrbitEvent]:
+    """Say where the surfaces touch, from time and displacements."""
     films = [one for one in problem.system.links if one.film]
     places = [one.motion(q[None], 0.0 * q[None], np.zeros(1))[0, :2] for one in films]
     left = [
         one.force.radial_clearance - math.hypot(*place)
         for one, place in zip(films, places, strict=True)
     ]
-    name = films[int(np.argmin(left))].name if films else "film"
-    return f"{name}: the surfaces touch after {t:.6g} s"
+    k = int(np.argmin(left))
+    event = OrbitEvent("touch_down", t, float(places[k][0]), float(places[k][1]))
+    return f"{films[k].name}: the surfaces touch after {t:.6g} s", event
 
 
 class _Rosenbrock:
@@ -387,19 +407,53 @@ class _Rosenbrock:
         self.problem, self.knots = problem, schedule.knots
         self.step = 2.0 * np.pi / max(max(schedule.speeds), 1e-9) / 200.0
 
-    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+    def _march(self, q: Array, v: Array, start: float, stop: float, times: Array, step: float):
         problem = self.problem
-        qs, vs, count, status, end, q, v, self.step = march(
+        return march(
             q, v, float(start), float(stop), np.ascontiguousarray(times), self.knots,
-            problem.plain, problem.system.scale, problem.relative_tolerance, self.step,
+            problem.plain, problem.system.scale, problem.relative_tolerance, step,
         )  # fmt: skip
-        found, message = OrbitStatus.COMPLETED, ""
-        if status == TOUCHED:
-            found, message = OrbitStatus.TOUCH_DOWN, _touched(problem, end, q)
-        elif status != DONE:
-            found = OrbitStatus.INTEGRATION_FAILED
+
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+        problem, begin = self.problem, (q, v)
+        qs, vs, count, status, end, q, v, self.step = self._march(
+            q, v, start, stop, times, self.step
+        )
+        qs, vs = qs[:count], vs[:count]
+        bad = status == TOUCHED
+        if problem.contact is not None or bad:
+            bad = bad or problem.film_left(np.vstack([qs, q])).min() <= 0.0
+        if bad:
+            fine = np.cumprod(problem.film_left(qs) > 0.0).sum() if count else 0
+            first = (
+                (start, *begin)
+                if fine == 0
+                else (float(times[fine - 1]), qs[fine - 1], vs[fine - 1])
+            )
+            last = end if fine == count else times[fine]
+            when, q, v = self._contact(*first, float(last))
+            message, event = _touched(problem, when, q)
+            found = qs[:fine], vs[:fine]
+            return found, OrbitStatus.TOUCH_DOWN, message, q, v, event
+        if status != DONE:
             message = f"the steps became too short at {end:.6g} s"
-        return (qs[:count], vs[:count]), found, message, q, v
+            return (qs, vs), OrbitStatus.INTEGRATION_FAILED, message, q, v
+        return (qs, vs), OrbitStatus.COMPLETED, "", q, v
+
+    def _contact(self, t: float, q: Array, v: Array, stop: float) -> tuple[float, Array, Array]:
+        """Halve the time between a state with film and one without down to where it ends."""
+        none, last = np.zeros(0), (stop, q, v)
+        slack = 1e-12 * max(stop, 1e-300)
+        while stop - t > slack:
+            middle = 0.5 * (t + stop)
+            *_, end, q1, v1, _ = self._march(q, v, t, middle, none, middle - t)
+            if end < middle or self.problem.film_left(q1[None])[0] <= 0.0:
+                if end <= t:
+                    break
+                stop, last = end, (end, q1, v1)
+            else:
+                t, q, v = middle, q1, v1
+        return last if last[0] > t else (t, q, v)
 
 
 class _Exact:
@@ -476,6 +530,7 @@ class _Scipy:
 
     def __init__(self, problem: MotionProblem, schedule: SpeedSchedule | None) -> None:
         self.problem, self.schedule = problem, schedule
+        self.knots = schedule.knots if schedule is not None else np.zeros((0, 4))
         system, n = problem.system, problem.system.size
         self.inverse = np.linalg.inv(system.mass)
         top = max(max(problem.drive.speeds), 1.0)
@@ -490,9 +545,7 @@ class _Scipy:
         n, problem, p = self.size, self.problem, self.problem.plain
         q, v = np.ascontiguousarray(s[:n]), np.ascontiguousarray(s[n : 2 * n])
         if self.schedule is not None:
-            phi, w = float(self.schedule.angle_at(t)), float(self.schedule.speed_at(t))
-            alpha = float(self.schedule.knots[-2, 3]) if len(self.schedule.times) == 2 else float(
-                self.schedule._piece(np.asarray(t))[3])  # fmt: skip
+            phi, w, alpha = shaft(t, self.knots)
             force = force_on(t, q, v, phi, w, alpha, p)
             if not problem.system.compilable:
                 force = force + problem.system.solved(q, v, w)
@@ -533,14 +586,9 @@ class _Scipy:
         from scipy.integrate import solve_ivp
 
         problem, n = self.problem, self.size
-        films = [one for one in problem.system.links if one.film]
 
         def gap(_t: float, s: Array) -> float:
-            left = [1.0]
-            for one in films:
-                x, y = one.motion(s[None, :n], 0.0 * s[None, :n], np.zeros(1))[0, :2]
-                left.append(one.force.radial_clearance - one.minimum_film - math.hypot(x, y))
-            return min(left)
+            return min(float(problem.film_left(s[None, :n])[0]), 1.0)
 
         gap.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
         ends = times if times.size and times[-1] >= stop else np.append(times, stop)
@@ -559,10 +607,11 @@ class _Scipy:
         count = min(times.size, len(y))
         status, message = OrbitStatus.COMPLETED, ""
         if found.status == 1:
-            status = OrbitStatus.TOUCH_DOWN
             end = found.y_events[0][0]
-            message = _touched(problem, float(found.t_events[0][0]), end[:n])
-        elif found.status < 0:
+            message, event = _touched(problem, float(found.t_events[0][0]), end[:n])
+            both = y[:count, :n], y[:count, n:]
+            return both, OrbitStatus.TOUCH_DOWN, message, *_halves(end, n), event
+        if found.status < 0:
             status, message = OrbitStatus.INTEGRATION_FAILED, str(found.message)
         end = y[-1] if len(y) else np.concatenate([q, v])
         return (y[:count, :n], y[:count, n:]), status, message, *_halves(end, n)
@@ -574,7 +623,7 @@ def _driven(problem: MotionProblem, drive: TorqueDrive) -> Iterator[Motion]:
 
     solver, n = _Scipy(problem, None), problem.system.size
     corners = sorted({t for t, _ in problem.system.unbalance if 0.0 < t < drive.duration})
-    span = 2.0 * np.pi * _CHUNK_REVOLUTIONS / max(max(drive.speeds), 1e-9)
+    span = 2.0 * np.pi * CHUNK_REVOLUTIONS / max(max(drive.speeds), 1e-9)
     edges = sorted({*np.arange(0.0, drive.duration, span).tolist(), drive.duration, *corners})
     state = np.concatenate([problem.start, problem.velocity, [0.0, drive.start]])
     done, per_turn = 0, problem.samples_per_revolution

@@ -1,10 +1,9 @@
-"""One run in time, ready to be integrated: rotor, film force, loads, speed, feedback, start."""
+"""One run in time, ready to be integrated: rotor, film force, loads, speed, start."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -18,19 +17,6 @@ from ..rotor.rotor import MATRICES
 from .clearance import contact_boundary, minimum_film
 from .film_force import SolvedFilmForce
 from .forces import BearingForce, LinearForce
-
-
-class Method(StrEnum):
-    """SciPy integrators.
-
-    ``LSODA`` changes between Adams and BDF formulas as the film stiffens; it is the default.
-    ``DOP853`` is explicit, of order 8, for smooth non-stiff runs and cross-checks; ``Radau`` is
-    implicit, for very light journals close to the wall.
-    """
-
-    LSODA = "LSODA"
-    DOP853 = "DOP853"
-    RADAU = "Radau"
 
 
 @dataclass(frozen=True)
@@ -139,42 +125,6 @@ class SpeedSchedule:
 
 
 @dataclass(frozen=True)
-class Controller:
-    """Linear feedback of the journal's motion: an actuator's force on the journal.
-
-    z' = A z + B s and force = C z + D s, s = (x - xr, y - yr, vx, vy).
-
-    a, b, c, d : arrays of shape (k, k), (k, 4), (2, k), (2, 4). k = 0 for plain state feedback.
-    reference : (xr, yr) [m].
-    """
-
-    a: Array
-    b: Array
-    c: Array
-    d: Array
-    reference: tuple[float, float] = (0.0, 0.0)
-
-    def __post_init__(self) -> None:
-        k = self.a.shape[0]
-        for name, shape in (("a", (k, k)), ("b", (k, 4)), ("c", (2, k)), ("d", (2, 4))):
-            if getattr(self, name).shape != shape:
-                raise InputError(
-                    f"must have the shape {shape}",
-                    key=f"controller.{name}",
-                    value=getattr(self, name).shape,
-                )
-
-    def force(self, state: Array, away: Array) -> Array:
-        """Return the force (n, 2) [N] from controller states (n, k) and the journal's s (n, 4)."""
-        return state @ self.c.T + away @ self.d.T
-
-    @classmethod
-    def state_feedback(cls, gain: Array, reference: tuple[float, float] = (0.0, 0.0)) -> Controller:
-        """Return the force = -gain s, gain a (2, 4) array [N/m, N s/m]."""
-        return cls(np.zeros((0, 0)), np.zeros((0, 4)), np.zeros((2, 0)), -gain, reference)
-
-
-@dataclass(frozen=True)
 class OrbitProblem:
     """Rotor, film force, loads, speed and start (SI, load frame).
 
@@ -186,9 +136,8 @@ class OrbitProblem:
     initial_velocity : (float, float). Of the journal [m/s].
     equilibrium : (float, float) or None. Where the start is measured from [m]; None: the force's
         own static position at the first speed.
-    initial_state : Displacements, velocities and controller states, in place of the three above.
+    initial_state : Displacements and velocities, in place of the three above.
     loads : Steps, harmonic forces, motion of the base.
-    controller : Actuator force on the journal.
     minimum_film : Film thickness at which the run ends with ``touch_down`` [m] (the surfaces'
         roughness).
     stop_at_contact : With False a linear model runs on outside the clearance circle, where it means
@@ -211,7 +160,6 @@ class OrbitProblem:
     equilibrium: tuple[float, float] | None = None
     initial_state: Array | None = None
     loads: tuple[Load, ...] = ()
-    controller: Controller | None = None
     minimum_film: float = 0.0
     stop_at_contact: bool = True
     samples_per_revolution: int = 64
@@ -219,7 +167,6 @@ class OrbitProblem:
     bearing: Bearing | None = None
     kind: str = ""
     note: str = ""
-    method: Method = Method.LSODA
     relative_tolerance: float | None = None
 
     @property

@@ -453,7 +453,7 @@ def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[A
     for k in range(p.links.shape[0]):
         link = p.links[k]
         place = np.array(link_place(k, q, v, p))
-        length = 1e-6 * scale[link[1]]
+        length = 1e-6 * max(scale[link[1]], abs(place[0]), abs(place[1]))
         rate = max(abs(w), 1.0)
         for j in range(5):
             if j == 4 and link[5] < 0:

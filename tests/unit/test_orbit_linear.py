@@ -27,7 +27,6 @@ from rotorsim.orbit.analysis import _fit_modes, growth_rate, recognise
 from rotorsim.orbit.clearance import contact_boundary, minimum_film
 from rotorsim.orbit.integrate import _simulate_pieces
 from rotorsim.orbit.orbit import OrbitStatus, concatenate
-from rotorsim.orbit.problem import Controller, Method
 from rotorsim.orbit.spectrum import whirl_frequency_ratio
 from rotorsim.rotor import Rotor
 
@@ -132,14 +131,15 @@ def test_without_the_stop_the_linear_model_runs_on():
 
 def test_a_failing_integration_is_a_status():
     def blows_up(x, y, vx, vy, speed):
-        return (1e30 * x**2 / CLEARANCE if x > 2e-5 else 1e4, 0.0)
+        if x > 2e-5:
+            raise ArithmeticError("no film")
+        return 1e4, 0.0
 
     orbit = simulate(
         problem(
             force=CallableForce(blows_up, CLEARANCE),
             equilibrium=(0.0, 0.0),
             stop_at_contact=False,
-            method=Method.DOP853,
         )
     )
     assert orbit.status is OrbitStatus.INTEGRATION_FAILED
@@ -187,35 +187,6 @@ def test_base_shock_gives_its_impulse():
     shock = BaseShock((20.0, 0.0), duration=1e-4, start=1e-3)
     orbit = simulate(problem(force=free, loads=(shock,), stop_at_contact=False))
     assert orbit.vx[-1] == pytest.approx(-20.0 * 1e-4 * 2.0 / np.pi, rel=1e-6)
-
-
-def test_state_feedback_adds_stiffness_and_damping():
-    gain = np.array([[3e7, 0.0, 1e3, 0.0], [0.0, -2e7, 0.0, 5e2]])
-    start = {"initial_displacement": (1e-5, 5e-6)}
-    controlled = simulate(problem(controller=Controller.state_feedback(gain), **start))
-    same = constant_coefficients(1e8 * np.eye(2) + gain[:, :2], 2e4 * np.eye(2) + gain[:, 2:])
-    plain = simulate(problem(force=LinearForce(same, CLEARANCE), **start))
-    np.testing.assert_allclose(controlled.x, plain.x, atol=1e-7 * CLEARANCE)
-    np.testing.assert_allclose(controlled.y, plain.y, atol=1e-7 * CLEARANCE)
-
-
-def test_dynamic_controller_has_states_of_its_own():
-    # force = -k z, z following x with a lag: compared with the matrix exponential's mode
-    lag, gain = 200.0, 2e7
-    k = Controller(
-        a=-lag * np.eye(2),
-        b=lag * np.eye(2, 4),
-        c=-gain * np.eye(2),
-        d=np.zeros((2, 4)),
-    )
-    orbit = simulate(
-        problem(controller=k, initial_displacement=(1e-5, 0.0), samples_per_revolution=16)
-    )
-    system = np.array([[0.0, 1.0, 0.0], [-1e6, -200.0, -gain / 100.0], [lag, 0.0, -lag]])
-    values, vectors = np.linalg.eig(system)
-    share = np.linalg.solve(vectors, [1e-5, 0.0, 0.0])
-    x = np.real(np.exp(np.outer(orbit.t, values)) @ (vectors[0] * share))
-    np.testing.assert_allclose(orbit.x, x, atol=1e-7 * CLEARANCE)
 
 
 def test_python_force_equals_the_compiled_one():
@@ -341,7 +312,7 @@ def test_poincare_points_are_one_a_turn_at_one_shaft_angle():
 
 def test_reported_loads_are_what_the_rotor_feels():
     """Loads along an orbit against the acceleration that they give a free rotor."""
-    from rotorsim.orbit.equations import load_on_rotor
+    from rotorsim.orbit.integrate import load_on_rotor
 
     rotor = Rotor.jeffcott(50.0, 1e7, 5.0)
     loads = (

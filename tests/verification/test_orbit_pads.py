@@ -16,8 +16,9 @@ from rotorsim.film.pad_solution import solve_pads
 from rotorsim.model import LoadTarget, RigidPivot, SpherePivot, SpringPivot, ThermalSettings
 from rotorsim.model.orbit import ActuatorSettings
 from rotorsim.orbit import OrbitProblem, SpeedSchedule, simulate
-from rotorsim.orbit.equations import initial_state, right_hand_side
 from rotorsim.orbit.film_force import ActuatedSolvedFilm, loaded_film
+from rotorsim.orbit.integrate import motion_problem
+from rotorsim.orbit.motion import _Scipy
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.rotor import Rotor
 from rotorsim.study.control import study_control
@@ -41,9 +42,12 @@ def pads(pivot, **changes):
 
 def rates_by_differences(run: OrbitProblem, at_rest: float = 1e-6) -> np.ndarray:
     """State matrix about the state at rest, where no acceleration is above `at_rest` times w^2."""
-    rates = right_hand_side(run)[0]
     rest, n = run.force.rest, run.rotor.size
-    state = initial_state(replace(run, initial_displacement=(0.0, 0.0)), tuple(rest[:2]))
+    motion = motion_problem(replace(run, initial_displacement=(0.0, 0.0)), tuple(rest[:2]))
+    rates, state = (
+        _Scipy(motion, run.schedule).rates,
+        np.concatenate([motion.start, motion.velocity]),
+    )
     assert np.abs(rates(0.0, state)[n:] / run.force.scales).max() < at_rest * SPEED**2
     steps = 1e-5 * np.concatenate([run.force.scales, SPEED * run.force.scales])
     ahead, behind = (
