@@ -78,6 +78,26 @@ class Link:
     angle: float = 0.0
     pads: tuple[int, ...] = ()
 
+    @cached_property
+    def compilable(self) -> bool:
+        """Whether the force has a compiled form."""
+        return isinstance(self.force, CompilableForce)
+
+    @cached_property
+    def generalised(self) -> GeneralisedForce | None:
+        """The force, if it is that of a solved film."""
+        return self.force if isinstance(self.force, GeneralisedForce) else None
+
+    def at(self, q: Array, v: Array, speed: float) -> tuple[float, ...]:
+        """Return position, velocity and speed that the force is asked for, of one state."""
+        (i, j), (k, m) = self.inner, self.outer
+        x, y, vx, vy = float(q[i]), float(q[j]), float(v[i]), float(v[j])
+        if k >= 0:
+            x, y, vx, vy = x - q[k], y - q[m], vx - v[k], vy - v[m]
+        ring = float(v[self.ring]) if self.ring >= 0 else 0.0
+        turning = self.turning[0] * speed + self.turning[1] * ring
+        return x - self.offset[0], y - self.offset[1], vx, vy, turning
+
     def motion(self, q: Array, v: Array, speed: Array) -> Array:
         """Return position, velocity and speed (m, 5) that the force is asked for, along a run."""
         columns = []
@@ -165,7 +185,7 @@ class MotionSystem:
     @cached_property
     def compilable(self) -> bool:
         """Whether all links have a compiled form."""
-        return all(isinstance(link.force, CompilableForce) for link in self.links)
+        return all(link.compilable for link in self.links)
 
     def plain(self, lowest: float, highest: float) -> Plain:
         """Return the arrays for the compiled functions, good between two speeds [rad/s].
@@ -234,15 +254,17 @@ class MotionSystem:
         """Return the forces (n,) of the links that have no compiled form."""
         force = np.zeros(self.size)
         for link in self.links:
-            if not isinstance(link.force, CompilableForce):
-                np.add.at(force, *self._spread(link, self._pull(link, q, v, speed)[0]))
+            if not link.compilable:
+                pull = self._pull(link, q, v, speed)[0]
+                for at, size in zip(*self._spread(link, pull), strict=True):
+                    force[at] += size
         return force
 
     def solved_derivatives(self, q: Array, v: Array, speed: float) -> tuple[Array, Array]:
         """Return the stiffness and damping (n, n) of the links without a compiled form."""
         found = np.zeros((2, self.size, self.size))
         for link in self.links:
-            if not isinstance(link.force, CompilableForce):
+            if not link.compilable:
                 spread = np.zeros((self.size, 2 + len(link.pads)))
                 for column, unit in enumerate(np.eye(spread.shape[1])):
                     np.add.at(spread[:, column], *self._spread(link, unit))
@@ -262,18 +284,19 @@ class MotionSystem:
         self, link: Link, q: Array, v: Array, speed: float, slopes: bool = False
     ) -> tuple[Array, ...]:
         """Forces of a solved link on body and pads; with `slopes` stiffness and damping too."""
-        x, y, vx, vy, turning = link.motion(q[None], v[None], np.array([speed]))[0]
+        x, y, vx, vy, turning = link.at(q, v, speed)
         pads = list(link.pads)
         here, rate = np.array([x, y, *q[pads]]), np.array([vx, vy, *v[pads]])
-        if not isinstance(link.force, GeneralisedForce):
+        solved = link.generalised
+        if solved is None:
             return self._differences(link.force, here, rate, float(turning), slopes)
         turn = np.eye(here.size)
         c, s = math.cos(link.angle), math.sin(link.angle)
         turn[:2, :2] = [[c, -s], [s, c]]
         motion = turn.T @ here, turn.T @ rate, float(turning)
         if not slopes:
-            return (turn @ link.force.forces(*motion),)
-        force, stiffness, damping = link.force.linear(*motion)
+            return (turn @ solved.forces(*motion),)
+        force, stiffness, damping = solved.linear(*motion)
         return turn @ force, turn @ stiffness @ turn.T, turn @ damping @ turn.T
 
     @staticmethod
@@ -295,13 +318,13 @@ class MotionSystem:
         return before, np.column_stack(columns[:2]), np.column_stack(columns[2:])
 
     @staticmethod
-    def _spread(link: Link, pull: Array) -> tuple[Indices, Array]:
+    def _spread(link: Link, pull: Array) -> tuple[list[int], list[float]]:
         """Return where the forces of a link act, and how large they are."""
         at, sizes = [*link.inner, *link.pads], [*pull]
         if link.outer[0] >= 0:
             at += link.outer
             sizes += [-pull[0], -pull[1]]
-        return np.array(at, dtype=np.intp), np.array(sizes)
+        return at, sizes
 
     def displacement(self, q: Array) -> Array:
         """Return the displacements (m, k) of the whole machine along (m, n) unknowns."""
