@@ -215,7 +215,7 @@ def _from_elsewhere(case: Case, speed: float, failed: FilmSolution, walls: Walls
     problem = film_problem(isothermal, speed, case.bearing.turned(-frame), local)
     nearer = crossing(replace(field, mesh=(problem, frame)), place.position)
     if nearer is None or nearer.off > _JUMP:
-        message = _jump(case, place.position)
+        message = _jump(case, (nearer or place).position)
         return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=message)
     search, start = _search(case, problem, frame), np.array(_turned(nearer.position, -frame))
     film = _iterate(problem, start, search, None, walls)
