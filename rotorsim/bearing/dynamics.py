@@ -148,6 +148,9 @@ class FilmDynamics:
             mass = float(routh_coefficients(stiffness, damping).equivalent_stiffness) / whirl**2
             scale = radial_clearance * self.speed**2 / load
             return WhirlThreshold(verdict, mass, whirl, ratio, mass * scale)
+        if not self.stiffness.any():
+            # The last iterate of a film that vanished.
+            return rigid_threshold(self.stiffness[:2, :2], self.damping[:2, :2], self.speed)
         crossings = self._crossings()
         # Without a crossing any mass tells: one that would resonate near the shaft's frequency.
         typical = float(np.abs(np.diag(self.stiffness)[:2]).max()) / self.speed**2

@@ -129,6 +129,14 @@ def test_a_few_random_pads():
     _mostly_converged([_check(seed, thermal=False) for seed in range(200, 212)], lost=0.02)
 
 
+def test_pads_whose_film_vanishes_end_with_a_status():
+    """Neither stiffness nor damping is left."""
+    case, speed = random_case(467, thermal=True)
+    point, _ = solve_case(case, speed)
+    assert not point.converged
+    assert point.message
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("thermal", [False, True], ids=["isothermal", "thermal"])
 def test_random_pads(thermal: bool):
