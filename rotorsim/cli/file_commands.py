@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -276,12 +277,19 @@ def export(
 def view(
     output: Output,
     recording: Annotated[Path, typer.Argument(metavar="RECORDING", help="logs/NAME.rrd")],
+    web: Annotated[
+        bool,
+        option("--web", None, "Serve the web viewer to a browser of this machine, till Ctrl-C."),
+    ] = False,
 ) -> int:
     """Open a recording in the rerun viewer.
 
+    Without a display: rotorsim view --web logs/dal.rrd, and open the address it says; from another
+    machine through a tunnel of both ports.
+
     Example: rotorsim view logs/dal.rrd
     """
-    from ..show.viewer import open_viewer
+    from ..show.viewer import open_viewer, served_viewer
 
     if str(recording).startswith("-"):  # the viewer would take it for an option
         recording = Path(".").absolute() / recording
@@ -294,6 +302,14 @@ def view(
                 "is no recording of rerun (.rrd)" if kind is FileKind.RECORDING else sentence(kind)
             )
             raise InputError(said or "is no recording of rerun (.rrd)", source=recording)
+    if web:
+        with served_viewer(recording) as (address, process):
+            output.document({"address": address})
+            output.show(address)
+            output.note("open this address in a browser; Ctrl-C ends it")
+            with suppress(KeyboardInterrupt):
+                process.wait()
+        return DONE
     launch = open_viewer(recording)
     output.document({"started": launch.started, "message": launch.message})
     if launch.started:

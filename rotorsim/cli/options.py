@@ -83,6 +83,16 @@ UnitsOption = Annotated[
     option("--units", "SYSTEM", "Show results in si or us (mil, lbf, psi, degF); files stay SI.",
            "units in ~/.config/rotorsim/config.toml, else si"),
 ]  # fmt: skip
+FormatOption = Annotated[
+    str | None, option("--format", "FORMATS", "Figures as png, svg, pdf; some, with commas.", "own")
+]
+WidthOption = Annotated[
+    str | None,
+    option("--width", "LENGTH", 'Width of each figure, e.g. "90 mm" for a column.', "as drawn"),
+]
+FontOption = Annotated[
+    float | None, option("--font", "POINTS", "Size of the figures' text [pt].", "9")
+]
 OutputFolder = Annotated[Path, option("--output -o", "DIR", "Folder for what is written.", "here")]
 WorkersOption = Annotated[
     int | None, option("--workers -w", "N", "Processes; 1: none extra.", "all cores")
@@ -139,6 +149,27 @@ def positive(text: str | None, kind: str, key: str, example: str) -> float | Non
     if value <= 0.0:
         raise InputError("must be above 0", key=key, value=text)
     return value
+
+
+def ask_figure_files(formats: str | None, width: str | None, font: float | None) -> None:
+    """Write figures as the options say."""
+    if formats is None and width is None and font is None:
+        return
+    from ..show.figures.style import FORMATS, FigureFiles, ask_figures
+
+    chosen = tuple(part.strip().lower().lstrip(".") for part in (formats or "").split(",") if part)
+    if formats is not None and (not chosen or any(one not in FORMATS for one in chosen)):
+        raise InputError(
+            f"must be some of {', '.join(FORMATS)}, with commas between", key="--format",
+            value=formats,
+        )  # fmt: skip
+    metres = positive(width, "length", "--width", "90 mm")
+    if metres is not None and not 0.02 <= metres <= 2.0:
+        raise InputError("must lie from 20 mm to 2 m", key="--width", value=width)
+    if font is not None and not 2.0 <= font <= 40.0:
+        raise InputError("must lie from 2 to 40 points", key="--font", value=font)
+    inches = None if metres is None else metres / 0.0254
+    ask_figures(FigureFiles(chosen or None, inches, font))
 
 
 def asked_scenario(

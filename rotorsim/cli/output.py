@@ -35,6 +35,8 @@ WRONG_INPUT = 2
 _INTERRUPTED = 130
 """Stopped by the user (the shells' code for it)."""
 _TABLE_WIDTH = 100
+_DRAWING = ("run", "stability", "orbit", "control", "transient", "study")
+"""Commands that write figures."""
 
 
 def as_typed(path: Path) -> str:
@@ -125,17 +127,30 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
     """Make a command that returns its exit code safe to call: no traceback for what can go wrong.
 
     The command's first parameter is the `Output`; it is made from the options ``--json`` and
-    ``--quiet`` that `command` need not declare; ``--units`` sets what results are shown in.
+    ``--quiet`` that `command` need not declare; ``--units`` sets what results are shown in, and
+    ``--format``, ``--width`` and ``--font`` how figures are written, where the command draws some.
     """
     import inspect
 
-    from .options import JsonOption, QuietOption, UnitsOption
+    from .options import (
+        FontOption,
+        FormatOption,
+        JsonOption,
+        QuietOption,
+        UnitsOption,
+        WidthOption,
+        ask_figure_files,
+    )
+
+    draws = command.__name__ in _DRAWING
 
     @functools.wraps(command)
     def run(*, json_output: bool, quiet: bool, units: str | None, **options: Any) -> None:
         output = Output(json=json_output, quiet=quiet)
         try:
             show_units(units or _usual_units())
+            if draws:
+                ask_figure_files(*(options.pop(name) for name in ("formats", "width", "font")))
             code = command(output, **options)
         except Exception as error:
             code = _explain(_naming_machine(error, options), output)
@@ -149,6 +164,15 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
     keyword = inspect.Parameter.KEYWORD_ONLY
     own = [entry.replace(kind=keyword) for entry in list(signature.parameters.values())[1:]]
     common = [
+        *(
+            inspect.Parameter(name, keyword, default=None, annotation=annotation)
+            for name, annotation in (
+                ("formats", FormatOption),
+                ("width", WidthOption),
+                ("font", FontOption),
+            )
+            if draws
+        ),
         inspect.Parameter("json_output", keyword, default=False, annotation=JsonOption),
         inspect.Parameter("quiet", keyword, default=False, annotation=QuietOption),
         inspect.Parameter("units", keyword, default=None, annotation=UnitsOption),

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 
 from ..errors import InputError
 from ..file_kinds import is_missing
@@ -45,18 +49,15 @@ def open_viewer(path: str | Path) -> ViewerLaunch:
     InputError
         If there is no such file.
     """
-    recording = Path(path)
-    if not recording.is_file():
-        what = "there is no such recording; `rotorsim run` writes one"
-        raise InputError(what if is_missing(recording) else "is no recording", source=recording)
+    recording = _existing(path)
     program = viewer_program()
     if program is None:
         return ViewerLaunch(False, "The rerun-sdk package has no viewer on this platform.", 1)
     if not has_display():
         message = (
             "There is no display here (neither DISPLAY nor WAYLAND_DISPLAY is set), so that no"
-            f" window can open. Copy {recording} to a computer with a screen and open it there"
-            f" with `rotorsim view {recording.name}` or `rerun {recording.name}`."
+            f" window can open. `rotorsim view --web {recording}` serves it to a browser; or copy"
+            f" it to a computer with a screen: `rotorsim view {recording.name}`."
         )
         return ViewerLaunch(False, message, 1)
     command = [str(program), str(recording), "--bind", "127.0.0.1", "--port", "auto"]
@@ -65,6 +66,51 @@ def open_viewer(path: str | Path) -> ViewerLaunch:
         command, stdin=quiet, stdout=quiet, stderr=quiet, start_new_session=True
     )
     return ViewerLaunch(True, f"Opened {recording}. {_ANALYTICS_NOTE}", 0, process.pid)
+
+
+@contextmanager
+def served_viewer(path: str | Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    """Serve the web viewer with a recording to this machine's browsers, until the block ends.
+
+    Yields its address and the process that serves.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or no viewer on this platform.
+    """
+    recording, program = _existing(path), viewer_program()
+    if program is None:
+        raise InputError("the rerun-sdk package has no viewer on this platform", key="--web")
+    page, data = _free_ports(2)
+    command = [
+        str(program), str(recording), "--serve-web", "--bind", "127.0.0.1", "--port", str(data),
+        "--web-viewer-port", str(page),
+    ]  # fmt: skip
+    quiet = subprocess.DEVNULL
+    process = subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet)
+    try:
+        source = quote(f"rerun+http://127.0.0.1:{data}/proxy", safe="")
+        yield f"http://127.0.0.1:{page}/?url={source}", process
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def _free_ports(count: int) -> list[int]:
+    with ExitStack() as stack:
+        sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
+        for one in sockets:
+            one.bind(("127.0.0.1", 0))
+        return [int(one.getsockname()[1]) for one in sockets]
+
+
+def _existing(path: str | Path) -> Path:
+    recording = Path(path)
+    if not recording.is_file():
+        what = "there is no such recording; `rotorsim run` writes one"
+        raise InputError(what if is_missing(recording) else "is no recording", source=recording)
+    return recording
 
 
 def viewer_program() -> Path | None:

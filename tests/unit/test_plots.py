@@ -339,3 +339,13 @@ def test_tolerance_histograms_show_shares_and_what_is_missing():
     assert [patch.get_width() for patch in third.patches] == [0.4, -0.8]
     for axes in figure.axes:
         assert "[" in axes.get_xlabel()
+
+
+def test_figures_are_written_as_asked(tmp_path, monkeypatch):
+    from rotorsim.show.figures import style
+
+    figure, _ = style.new_axes(1, 1, (6.0, 3.0), "title")
+    monkeypatch.setattr(style, "_asked", [style.FigureFiles(("pdf", "svg"), 3.5, 7.0)])
+    written = style.save_figure(figure, tmp_path / "one")
+    assert [path.suffix for path in written] == [".pdf", ".svg"]
+    assert figure.get_size_inches() == pytest.approx([3.5, 1.75])

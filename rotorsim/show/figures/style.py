@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 from ...atomic import replacing
 from ...rows import RPM as RPM
@@ -102,16 +104,47 @@ def figure_of(ax: Axes) -> Figure:
     return figure
 
 
+@dataclass(frozen=True)
+class FigureFiles:
+    """How figures are written where something else than usual is asked for.
+
+    formats : Suffixes; None: as the command does.
+    width : Of each figure [inch]; its height follows. None: as drawn.
+    font : Size of ordinary text [pt]; None: as drawn.
+    """
+
+    formats: tuple[str, ...] | None = None
+    width: float | None = None
+    font: float | None = None
+
+
+FORMATS = ("png", "svg", "pdf")
+_asked = [FigureFiles()]
+
+
+def ask_figures(files: FigureFiles) -> None:
+    """Write figures like this from now on."""
+    _asked[0] = files
+
+
 def save_figure(
     figure: Figure, stem: str | Path, formats: Sequence[str] = ("png", "svg"), dpi: int = 150
 ) -> list[Path]:
-    """Write a figure as STEM.png and STEM.svg, each whole or not at all.
+    """Write a figure as STEM.png and STEM.svg, each whole or not at all; see `ask_figures`.
 
     stem : str or Path. File name without suffix; missing folders are made.
     dpi : Of pixel formats.
     """
+    asked = _asked[0]
+    if asked.width is not None:
+        width, height = figure.get_size_inches()
+        figure.set_size_inches(asked.width, height * asked.width / width)
+    if asked.font is not None:
+        ratio = asked.font / SETTINGS["font.size"]
+        for text in figure.findobj(Text):
+            text.set_fontsize(ratio * text.get_fontsize())
     written = []
-    for suffix in formats:
+    for suffix in asked.formats or formats:
         path = Path(f"{stem}.{suffix}")
         with replacing(path) as temporary:
             temporary.write_bytes(figure_bytes(figure, suffix, dpi))
@@ -122,7 +155,7 @@ def save_figure(
 def figure_bytes(figure: Figure, suffix: str = "svg", dpi: int = 150) -> bytes:
     """Give what a file of the figure would hold."""
     # Without the date, the same figure gives the same file.
-    metadata = {"Date": None} if suffix == "svg" else None
+    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(suffix)
     stream = io.BytesIO()
     with mpl.rc_context(SETTINGS):
         figure.savefig(stream, format=suffix, dpi=dpi, metadata=metadata)
