@@ -409,17 +409,28 @@ def _kind(entry: Entry) -> str | None:
 def to_toml(tables: Mapping[str, Any]) -> str:
     """Return TOML text: one line for each entry."""
     lines = [
-        f"{key} = {_toml(value)}" for key, value in tables.items() if not isinstance(value, dict)
+        f"{_key(key)} = {_toml(value)}"
+        for key, value in tables.items()
+        if not isinstance(value, dict)
     ]
     for name, table in tables.items():
         if isinstance(table, dict):
-            lines += ["", f"[{name}]", *(f"{key} = {_toml(one)}" for key, one in table.items())]
+            lines += [
+                "",
+                f"[{name}]",
+                *(f"{_key(key)} = {_toml(one)}" for key, one in table.items()),
+            ]
     return "\n".join([*lines, ""]).lstrip("\n")
+
+
+def _key(name: str) -> str:
+    """Key as TOML has it: in quotes where it holds a dot."""
+    return json.dumps(name, ensure_ascii=False) if "." in name else name
 
 
 def _toml(value: Any) -> str:
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {_toml(one)}" for key, one in value.items()) + " }"
+        return "{ " + ", ".join(f"{_key(key)} = {_toml(one)}" for key, one in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(_toml, value)) + "]"
     if isinstance(value, bool):
