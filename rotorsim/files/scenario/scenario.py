@@ -408,19 +408,15 @@ def _kind(entry: Entry) -> str | None:
 
 def to_toml(tables: Mapping[str, Any]) -> str:
     """Return TOML text: one line for each entry."""
-    lines = [
-        f"{_key(key)} = {_toml(value)}"
-        for key, value in tables.items()
-        if not isinstance(value, dict)
-    ]
+    lines = [_line(key, value) for key, value in tables.items() if not isinstance(value, dict)]
     for name, table in tables.items():
         if isinstance(table, dict):
-            lines += [
-                "",
-                f"[{name}]",
-                *(f"{_key(key)} = {_toml(one)}" for key, one in table.items()),
-            ]
+            lines += ["", f"[{name}]", *(_line(key, one) for key, one in table.items())]
     return "\n".join([*lines, ""]).lstrip("\n")
+
+
+def _line(key: str, value: Any) -> str:
+    return f"{_key(key)} = {_toml(value)}"
 
 
 def _key(name: str) -> str:
@@ -430,7 +426,7 @@ def _key(name: str) -> str:
 
 def _toml(value: Any) -> str:
     if isinstance(value, dict):
-        return "{ " + ", ".join(f"{_key(key)} = {_toml(one)}" for key, one in value.items()) + " }"
+        return "{ " + ", ".join(_line(key, one) for key, one in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(_toml, value)) + "]"
     if isinstance(value, bool):
