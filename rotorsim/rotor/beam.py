@@ -392,8 +392,8 @@ def buckling_load(beam: Beam, supports: Sequence[float]) -> float:
     )
     held = [free.first_unknown[node] + k for node in free.bearing_nodes for k in (0, 1)]
     kept = np.setdiff1d(np.arange(len(free.stiffness)), held)
-    elastic = np.array(free.stiffness)[np.ix_(kept, kept)]
-    softening = elastic - np.array(pressed.stiffness)[np.ix_(kept, kept)]
+    elastic, softened = (np.array(one.stiffness)[kept[:, None], kept] for one in (free, pressed))
+    softening = elastic - softened
     try:
         return 1.0 / float(eigh(softening, elastic, eigvals_only=True)[-1])
     except LinAlgError:
