@@ -147,7 +147,7 @@ class OrbitProblem:
         bearing of the force's clearance.
     kind, note : Labels of the orbit.
     relative_tolerance : Of one integration step; the absolute one is 1e-3 of it times the
-        clearance. None: 1e-8 with linear coefficients, whose growth is to be measured, 3e-7 with a
+        clearance. None: 1e-8 with linear coefficients, whose growth is to be measured, 1e-7 with a
         nonlinear film, 1e-5 with one that is solved at each step.
     """
 
@@ -176,7 +176,7 @@ class OrbitProblem:
             return self.relative_tolerance
         if isinstance(self.force, LinearForce):
             return 1e-8
-        return 1e-5 if isinstance(self.force, SolvedFilmForce) else 3e-7
+        return 1e-5 if isinstance(self.force, SolvedFilmForce) else 1e-7
 
     @property
     def pads(self) -> tuple[str, ...]:
