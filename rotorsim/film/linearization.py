@@ -61,7 +61,7 @@ class _Motions:
     def reaction(self, right: Array, factor: Factor | None = None) -> NDArray[Any]:
         """Return -dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
         state, factor = self.state, factor or self.factor
-        loaded = state.solution.full | _filled(factor)
+        loaded = state.solution.carrying | _filled(factor)
         perturbed = np.where(loaded, factor.solve(right), 0.0) * state.operator.area
         shapes = self.displacements.shapes[:, CENTER].reshape(-1, perturbed[0].size)
         multiplicity = state.problem.geometry.multiplicity

@@ -46,6 +46,11 @@ class PressureSolution:
     violations: int = 0
     inlet: Array | None = None
 
+    @property
+    def carrying(self) -> Booleans:
+        """Full cells whose pressure is what their continuity gives, not dropped, (n, m)."""
+        return np.asarray(self.full & (self.pressure == self.raw), dtype=bool)
+
 
 class RuptureCondition(Protocol):
     """What the film does where it would pull."""
