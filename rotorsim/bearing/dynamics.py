@@ -15,7 +15,7 @@ matrices.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -24,10 +24,13 @@ import numpy as np
 from scipy.linalg import block_diag, eigvals
 
 from ..arrays import Array, ComplexArray
-from ..film.geometry import ROTATIONS, TRANSLATIONS, idle_pitches, pad_unknowns
+from ..film.bending import pad_bending
+from ..film.geometry import ROTATIONS, TRANSLATIONS, PadUnknowns, idle_pitches, pad_unknowns
 from ..film.linearization import DynamicStiffness, linearize
+from ..film.pad_frame import bending_springs
 from ..film.solution import FilmSolution
 from ..model import Bearing, PadInertia, pad_inertia
+from ..model.settings import DeformationResponse
 from ..status import Stability
 from .operating_point import FrequencyCoefficients, FullCoefficients, condensed
 from .whirl import (
@@ -222,7 +225,7 @@ def film_dynamics(
     def stored_oil(s: complex) -> ComplexArray:
         return law(s)[np.ix_(keep, keep)] - stiffness - s * damping
 
-    names, keep = _moving(solution.problem.bearing, solution.unloaded, rotations)
+    names, keep = _moving(solution, rotations)
     stiffness, damping = stiffness[np.ix_(keep, keep)], damping[np.ix_(keep, keep)]
     stores = False
     if solution.problem.rupture.conserves_mass and np.isfinite(stiffness).all():
@@ -237,7 +240,7 @@ def film_dynamics(
         pitching = [_inertia(bearing, number).pitch for number in idle_pitches(bearing)]
         turning = np.diag([0.0, 0.0, *pitching])
         mass = np.asarray(block_diag(pad_mass(bearing), turning))[np.ix_(keep, keep)]
-        pivots = block_diag(_pivot_stiffness(bearing, q), 0.0 * turning)
+        pivots = block_diag(np.diag(pad_springs(bearing, q)[1]), 0.0 * turning)
         held = held + np.asarray(pivots)[np.ix_(keep, keep)]
     return FilmDynamics(
         turn=turn,
@@ -267,15 +270,16 @@ def full_coefficients(dynamics: FilmDynamics, frequency_ratio: float | None) -> 
     return FullCoefficients(dynamics.names, stiffness, damping, mass)
 
 
-def _moving(
-    bearing: Bearing, unloaded: Collection[int], rotations: bool
-) -> tuple[tuple[str, ...], list[int]]:
+def _moving(solution: FilmSolution, rotations: bool) -> tuple[tuple[str, ...], list[int]]:
     """Return the names and places of the displacements: the journal's, then those of loaded pads.
 
     `linearize` gives the journal's rotations last, with the pitches that go with them.
     """
+    bearing, unloaded = solution.problem.bearing, solution.unloaded
     names, pads = pad_unknowns(bearing)
     out = {place for number in unloaded for place in pads[number].places}
+    if solution.problem.settings.deformation_response is DeformationResponse.FROZEN:
+        out |= {place for pad in pads for place in pad.bends}
     keep = [place for place in range(2, len(names)) if place not in out]
     journal, places = TRANSLATIONS, [0, 1]
     if rotations:
@@ -286,13 +290,17 @@ def _moving(
     return (*journal, *(names[place] for place in keep)), places + keep
 
 
-def _pivot_stiffness(bearing: Bearing, displacement: Array) -> Array:
-    """Return the stiffness of the pads' pivots at their deflections, (q, q)."""
-    stiffness = np.zeros(displacement.size)
+def pad_springs(bearing: Bearing, displacement: Array) -> tuple[Array, Array]:
+    """Return the forces by which pivots and bent pads resist their displacements, and their stiffness, (q,)."""
+    force, stiffness = np.zeros((2, displacement.size))
     for pad, unknowns in zip(bearing.pads, pad_unknowns(bearing)[1], strict=True):
         if (place := unknowns.pivot) is not None:
+            force[place] = pad.pivot.force(float(displacement[place]))
             stiffness[place] = pad.pivot.stiffness_at(float(displacement[place]))
-    return np.diag(stiffness)
+        bends = list(unknowns.bends)
+        stiffness[bends] = bending_springs(bearing, pad)
+        force[bends] = stiffness[bends] * displacement[bends]
+    return force, stiffness
 
 
 def _inertia(bearing: Bearing, number: int) -> PadInertia:
@@ -313,7 +321,25 @@ def pad_mass(bearing: Bearing) -> Array:
             mass[pivot, tilt] = mass[tilt, pivot] = -inertia.coupling
         if unknowns.pitch is not None:
             mass[unknowns.pitch, unknowns.pitch] = inertia.pitch
+        if unknowns.bends:
+            _add_bending_mass(mass, bearing, number, unknowns)
     return mass
+
+
+def _add_bending_mass(mass: Array, bearing: Bearing, number: int, unknowns: PadUnknowns) -> None:
+    """Radial motion of a pad that bends, with its tilt and its pivot's displacement."""
+    pad, first = bearing.pads[number], unknowns.bends[0]
+    whole, arm = _inertia(bearing, number).mass, bearing.journal_radius + pad.thickness
+    for side in pad_bending(pad, bearing.journal_radius, bearing.length):
+        angle = np.copysign(side.points, side.side)
+        own = whole * abs(side.side) / pad.arc
+        places = list(range(first, first + len(side.values)))
+        mass[places, places] = own
+        coupled = [(unknowns.tilt, -arm * np.sin(angle)), (unknowns.pivot, np.cos(angle))]
+        for place, shape in coupled:
+            if place is not None:
+                mass[places, place] = mass[place, places] = own * side.mean(shape)
+        first += len(places)
 
 
 def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:

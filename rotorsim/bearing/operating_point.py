@@ -153,6 +153,7 @@ class PadResult:
     inlet_temperature : Of the oil that enters its film [K].
     inlet_fraction : Part of its leading edge that is full of oil: below 1 the pad is starved.
     hot_radial_clearance, hot_preload : When hot, machined [m]; with thermal expansion only.
+    deflection : By which the film's pressure bends an edge away from the journal, the larger [m].
     unloaded : Its film cannot be balanced at positive pressure: the pad floats or flutters. It is
         kept out of the equilibrium and the coefficients; its tilt is arbitrary.
     """
@@ -168,6 +169,7 @@ class PadResult:
     unloaded: bool
     hot_radial_clearance: float | None = None
     hot_preload: float | None = None
+    deflection: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from ..film.geometry import CENTER
+import numpy as np
+from numpy.typing import NDArray
+
+from ..film.bending import pad_bending
+from ..film.geometry import CENTER, pad_unknowns
 from ..film.heat import entering_temperature
 from ..film.pad_frame import pad_frames
 from ..film.solution import FilmSolution
 from ..model import Bearing, Cavitation, Feed
 from .operating_point import PadResult
+
+Array = NDArray[np.float64]
 
 
 def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
@@ -40,9 +46,21 @@ def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
                 unloaded=unloaded,
                 hot_radial_clearance=frame.clearance if hot else None,
                 hot_preload=frame.preload if hot else None,
+                deflection=0.0 if unloaded else _deflection(problem.bearing, number, q),
             )
         )
     return tuple(results)
+
+
+def _deflection(bearing: Bearing, number: int, q: Array) -> float:
+    """Larger deflection [m] of a pad's two edges; 0 for a rigid pad."""
+    pad, bends = bearing.pads[number], pad_unknowns(bearing)[1][number].bends
+    if not bends:
+        return 0.0
+    sides = pad_bending(pad, bearing.journal_radius, bearing.length)
+    edges = [side.at(np.array(side.side)) for side in sides]
+    parts = np.split(q[list(bends)], len(sides))
+    return max(float(shape @ part) for shape, part in zip(edges, parts, strict=True))
 
 
 def unloaded_warnings(unloaded: Collection[int]) -> tuple[str, ...]:

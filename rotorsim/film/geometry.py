@@ -18,6 +18,7 @@ import numpy as np
 
 from ..arrays import Array, Booleans
 from ..model import Bearing, Pad
+from .bending import MODES, pad_bending
 
 if TYPE_CHECKING:
     from .mesh import FilmMesh
@@ -160,18 +161,21 @@ class PadUnknowns:
     tilt: int
     pivot: int | None
     pitch: int | None
+    bends: tuple[int, ...] = ()
 
     @property
     def places(self) -> list[int]:
         """All of them."""
-        return [place for place in (self.tilt, self.pivot, self.pitch) if place is not None]
+        single = [place for place in (self.tilt, self.pivot, self.pitch) if place is not None]
+        return [*single, *self.bends]
 
 
 def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, ...]]:
     """Return the names of all displacements of a film between pads, and the places of each pad's.
 
     A flexible pivot adds its radial displacement, positive outwards. A ball lets the pad pitch,
-    which a misaligned journal asks of it; aligned, pitch and the other displacements are apart.
+    which a misaligned journal asks of it; aligned, pitch and the other displacements are apart. A
+    pad that bends adds its shapes ahead of the pivot, then those behind it.
     """
     names: list[str] = [*TRANSLATIONS]
     places = []
@@ -185,7 +189,9 @@ def pad_unknowns(bearing: Bearing) -> tuple[tuple[str, ...], tuple[PadUnknowns, 
         if pad.pivot.pitches and not bearing.is_symmetric:
             pitch = len(names)
             names.append(f"pitch_{number}")
-        places.append(PadUnknowns(tilt, pivot, pitch))
+        bends = tuple(range(len(names), len(names) + (2 * MODES if pad.youngs_modulus else 0)))
+        names += [f"bend_{number}_{k + 1}" for k in range(len(bends))]
+        places.append(PadUnknowns(tilt, pivot, pitch, bends))
     return tuple(names), tuple(places)
 
 
@@ -233,6 +239,10 @@ def _journal_and_pads(bearing: Bearing, mesh: FilmMesh) -> Displacements:
         if own.pitch is not None:
             shapes[own.pitch][:, columns] = along * np.cos(angle)
             scales[own.pitch] = clearance / (0.5 * bearing.length)
+        if own.bends:
+            sides = pad_bending(pad, bearing.journal_radius, bearing.length)
+            bent = np.concatenate([side.at(angle) for side in sides])
+            shapes[np.ix_(own.bends, range(5), columns)] = bent
     return Displacements(names, shapes, scales)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Array, Booleans
 from ..model import Bearing, Pad
+from .bending import pad_bending
 from .geometry import PadUnknowns, pad_unknowns
 from .mesh import FilmMesh
 
@@ -21,6 +22,7 @@ class PadFrame:
     arm : R + t [m].
     columns : (n,) bool array
     sine : (5, columns, 1) array. sin(theta - theta_p) at the points of `FilmGeometry.rest`.
+    springs : (bends,) array. Stiffness of the shapes in which the pad bends [N/m].
     """
 
     pad: Pad
@@ -30,6 +32,7 @@ class PadFrame:
     columns: Booleans
     unknowns: PadUnknowns
     sine: Array
+    springs: Array
 
     def eccentricity(self, q: Array) -> tuple[float, float]:
         """Return the E_n and E_t at the mid-plane [m]."""
@@ -72,6 +75,14 @@ class PadFrame:
         return min(angle, 0.45 * math.pi)
 
 
+def bending_springs(bearing: Bearing, pad: Pad) -> Array:
+    """Stiffness of the shapes in which a pad bends [N/m], in the order of `PadUnknowns.bends`."""
+    if pad.youngs_modulus is None:
+        return np.zeros(0)
+    sides = pad_bending(pad, bearing.journal_radius, bearing.length)
+    return np.concatenate([side.stiffness for side in sides])
+
+
 def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
     """Return the frames of all pads of a film."""
     _, places = pad_unknowns(bearing)
@@ -90,6 +101,7 @@ def pad_frames(bearing: Bearing, mesh: FilmMesh) -> tuple[PadFrame, ...]:
                 columns,
                 unknowns,
                 sine,
+                bending_springs(bearing, pad),
             )
         )
     return tuple(frames)

@@ -180,7 +180,10 @@ class PadSearch:
         for number, frame in enumerate(self.frames):
             if number in self.unloaded:
                 missing[frame.unknowns.places] = 0.0
-            elif frame.unknowns.pivot is not None:
+                continue
+            bends = list(frame.unknowns.bends)
+            missing[bends] -= frame.springs * state.displacement[bends]
+            if frame.unknowns.pivot is not None:
                 place = frame.unknowns.pivot
                 wanted, stiffness = self._pivot_under(state, frame)
                 missing[place] = stiffness * (wanted - float(state.displacement[place]))
@@ -198,13 +201,16 @@ class PadSearch:
         return deflection, frame.pad.pivot.stiffness_at(deflection)
 
     def stiffness(self, state: FilmState) -> Array:
-        """Return the film and pivots, (q, q); an unloaded pad's unknowns stand alone."""
+        """Return film, pivots and bent pads, (q, q); an unloaded pad's unknowns stand alone."""
         stiffness = stiffness_matrix(state)
         for number, frame in enumerate(self.frames):
             if number in self.unloaded:
                 for place in frame.unknowns.places:
                     stiffness[place, place] = 1.0
-            elif frame.unknowns.pivot is not None:
+                continue
+            bends = list(frame.unknowns.bends)
+            stiffness[bends, bends] += frame.springs
+            if frame.unknowns.pivot is not None:
                 place = frame.unknowns.pivot
                 stiffness[place, place] += self._pivot_under(state, frame)[1]
         return stiffness

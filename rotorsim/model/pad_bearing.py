@@ -27,11 +27,13 @@ from .pads import (
     Density,
     Extent,
     Inertia,
+    Modulus,
     Pad,
     PadMass,
     PadPivot,
     PadPreload,
     PivotOffset,
+    Poisson,
     Thickness,
     check_order,
     gaps,
@@ -75,6 +77,8 @@ class PadEntry:
     mass: PadMass | None = None
     tilt_inertia: Inertia | None = None
     pitch_inertia: Inertia | None = None
+    youngs_modulus: Modulus | None = None
+    poisson_ratio: Poisson | None = None
 
     def __post_init__(self) -> None:
         check(self, "pads" if isinstance(self, PadSet) else "pad")

@@ -292,6 +292,8 @@ class Pad:
     mass : [kg]
     tilt_inertia, pitch_inertia : About the pivot's axis, and about the tangent at the pivot [kg
         m2].
+    youngs_modulus, poisson_ratio : Of a pad that bends under the film's pressure [Pa]; without the
+        modulus it does not.
 
     Mass and inertias that are not given are those of the annular sector between the journal's
     radius and that plus the thickness, over the bearing's length.
@@ -309,6 +311,8 @@ class Pad:
     mass: PadMass | None = None
     tilt_inertia: Inertia | None = None
     pitch_inertia: Inertia | None = None
+    youngs_modulus: Modulus | None = None
+    poisson_ratio: Poisson = POISSON_RATIO
 
     def __post_init__(self) -> None:
         check(self, "pad")

@@ -184,6 +184,15 @@ class ViscosityResponse(StrEnum):
     """It follows, as in a displacement so slow that the film stays in thermal equilibrium."""
 
 
+class DeformationResponse(StrEnum):
+    """What the shape of elastic pads or bush does while the journal moves, for K and C."""
+
+    FOLLOWING = "following"
+    """It bends with the pressure at once."""
+    FROZEN = "frozen"
+    """It keeps the shape of the equilibrium."""
+
+
 class RupturedFriction(StrEnum):
     """Which part of the ruptured sector counts in the reported friction."""
 
@@ -229,6 +238,7 @@ class FilmSettings:
     mesh: MeshSize = field(default_factory=MeshSize)
     ruptured_friction: RupturedFriction = RupturedFriction.LIQUID
     viscosity_response: ViscosityResponse = ViscosityResponse.FROZEN
+    deformation_response: DeformationResponse = DeformationResponse.FOLLOWING
     frequency_ratios: Annotated[
         tuple[Annotated[float, Number(above=0.0)], ...], Key("frequency_ratio")
     ] = ()

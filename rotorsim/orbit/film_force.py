@@ -14,12 +14,12 @@ from numpy.typing import ArrayLike
 from scipy.linalg import block_diag
 
 from ..arrays import Array, Booleans, ComplexArray
-from ..bearing.dynamics import pad_mass
+from ..bearing.dynamics import pad_mass, pad_springs
 from ..bearing.interpolation import Coefficients
 from ..bearing.operating_point import condensed
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
-from ..film.geometry import film_geometry, pad_unknowns, rotation
+from ..film.geometry import film_geometry, rotation
 from ..film.layers import LayerIntegrals
 from ..film.linearization import linearize
 from ..film.pad_solution import solve_pads
@@ -224,13 +224,8 @@ class SolvedFilmForce:
         return np.asarray(values[np.argsort(-np.real(values), kind="stable")], dtype=complex)
 
     def _pivots(self, q: Array) -> tuple[Array, Array]:
-        """Return the forces of the pads' pivots, and their stiffnesses."""
-        held, tangent = np.zeros((2, len(q)))
-        for pad, own in zip(self.bearing.pads, pad_unknowns(self.bearing)[1], strict=True):
-            if own.pivot is not None:
-                held[own.pivot] = pad.pivot.force(float(q[own.pivot]))
-                tangent[own.pivot] = pad.pivot.stiffness_at(float(q[own.pivot]))
-        return held, tangent
+        """Return the forces of the pads' pivots and bending, and their stiffnesses."""
+        return pad_springs(self.bearing, q)
 
     def film(self, q: Array, v: Array, speed: float) -> FilmState:
         """Film at these displacements and rates, in the problem's frame; errors as `forces`."""
