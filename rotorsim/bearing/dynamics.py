@@ -228,7 +228,9 @@ def film_dynamics(
     names, keep = _moving(solution, rotations)
     stiffness, damping = stiffness[np.ix_(keep, keep)], damping[np.ix_(keep, keep)]
     stores = False
-    if solution.problem.rupture.conserves_mass and np.isfinite(stiffness).all():
+    follows = solution.problem.settings.deformation_response is DeformationResponse.FOLLOWING
+    elastic = solution.problem.elastic is not None and follows
+    if (solution.problem.rupture.conserves_mass or elastic) and np.isfinite(stiffness).all():
         changed = np.abs(stored_oil(1j * _DEFAULT_RATIO * speed)).max()
         stores = bool(changed > _NOTHING * np.abs(stiffness).max())
     held = stiffness if following is None else following[np.ix_(keep, keep)]
@@ -291,7 +293,7 @@ def _moving(solution: FilmSolution, rotations: bool) -> tuple[tuple[str, ...], l
 
 
 def pad_springs(bearing: Bearing, displacement: Array) -> tuple[Array, Array]:
-    """Return the forces by which pivots and bent pads resist their displacements, and their stiffness, (q,)."""
+    """Return forces by which pivots and bent pads resist their displacements, and stiffnesses."""
     force, stiffness = np.zeros((2, displacement.size))
     for pad, unknowns in zip(bearing.pads, pad_unknowns(bearing)[1], strict=True):
         if (place := unknowns.pivot) is not None:

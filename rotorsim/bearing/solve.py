@@ -232,7 +232,7 @@ def _within_pressure(max_pressure: float, case: Case) -> tuple[SolveStatus, str]
 def _min_film_thickness(solution: FilmSolution) -> float:
     """Return the smallest film thickness [m], lands only."""
     bearing, state = solution.problem.bearing, solution.state
-    if bearing.is_plain and bearing.is_symmetric:
+    if bearing.is_plain and bearing.is_symmetric and state.deflection is None:
         return bearing.radial_clearance - math.hypot(*state.displacement)
     return state.min_thickness
 

@@ -4,7 +4,8 @@ A unit radial load at the angle b from the pivot bends the side of the pad on wh
 moment, normal and shear force at the angle c are r sin(b - c), sin(b - c) and cos(b - c), r the
 mid-thickness radius, so that (Castigliano) it moves the place a radially by
 
-    f(a, b) = int_0^min(a,b) [(r^2/EI + 1/EA) sin(a - c) sin(b - c) + cos(a - c) cos(b - c)/kGA] r dc,
+    f(a, b) = int_0^min(a,b) [(r^2/EI + 1/EA) sin(a - c) sin(b - c)
+                              + cos(a - c) cos(b - c)/kGA] r dc,
 
 k = 5/6, E the modulus of a beam: a pad that bends by micrometres is free to curve across, whatever
 its width. The eigenfunctions of f are the shapes v of generalised displacements, positive outwards,
@@ -18,11 +19,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..model import Pad
 
-Array = NDArray[np.float64]
 MODES = 2
 """Shapes on either side of the pivot; they leave 0.3 % of the deflection under even pressure."""
 _POINTS = 80

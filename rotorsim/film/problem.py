@@ -19,6 +19,7 @@ from ..model import (
     ThermalSettings,
 )
 from .banded import NoFilmError
+from .elastic import ElasticBore, elastic_bore
 from .flow_law import FlowLaw, flow_law
 from .geometry import CENTER, FilmGeometry, film_geometry
 from .growth import hot_clearances, with_clearances
@@ -41,6 +42,7 @@ class FilmProblem:
 
     speed : [rad/s]
     cold : The bearing at the reference temperature of its expansion; `bearing` is the hot one.
+    elastic : How the bore gives way; None where it does not.
     """
 
     bearing: Bearing
@@ -54,6 +56,7 @@ class FilmProblem:
     flow_law: FlowLaw
     rupture: RuptureCondition
     cold: Bearing
+    elastic: ElasticBore | None = None
 
     @property
     def surface_speed(self) -> float:
@@ -82,6 +85,8 @@ class FilmState:
     layers : Under the problem's flow law.
     force : (q,) array. Generalised forces of the film; the first two are those on the journal [N],
         film frame.
+    deflection : (5, n, m) array or None. Of the bore under the pressure, at the same points as the
+        thickness, which holds it [m].
     """
 
     problem: FilmProblem
@@ -91,6 +96,7 @@ class FilmState:
     layers: LayerIntegrals
     solution: PressureSolution
     force: Array
+    deflection: Array | None = None
 
     @property
     def center_thickness(self) -> Array:
@@ -129,6 +135,7 @@ def film_problem(
         flow_law=flow_law(case),
         rupture=_rupture(case, bearing, mesh),
         cold=cold,
+        elastic=elastic_bore(bearing, mesh),
     )
 
 
@@ -167,9 +174,27 @@ def film_state(
     start, frozen : (n, m) bool arrays. See `RuptureCondition.solve`.
     Raises NoFilmError: The walls touch.
     """
-    geometry, mesh = problem.geometry, problem.mesh
     displacement = np.array(displacement, dtype=float)
+
+    def film(deflection: Array | None) -> FilmState:
+        return _film_state(problem, displacement, layers, deflection, velocity, start, frozen)
+
+    return film(None) if problem.elastic is None else problem.elastic.settle(film)
+
+
+def _film_state(
+    problem: FilmProblem,
+    displacement: Array,
+    layers: LayerIntegrals,
+    deflection: Array | None,
+    velocity: ArrayLike | None,
+    start: NDArray[np.bool_] | None,
+    frozen: NDArray[np.bool_] | None,
+) -> FilmState:
+    geometry, mesh = problem.geometry, problem.mesh
     thickness = geometry.thickness(displacement)
+    if deflection is not None:
+        thickness += deflection
     if geometry.thinnest(thickness) <= 0.0:
         raise NoFilmError(
             "the journal touches the bore: lobes and misalignment leave less room than asked"
@@ -189,4 +214,6 @@ def film_state(
         frozen=frozen,
     )
     force = geometry.forces(solution.pressure * operator.area)
-    return FilmState(problem, displacement, thickness, operator, layers, solution, force)
+    return FilmState(
+        problem, displacement, thickness, operator, layers, solution, force, deflection
+    )

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import InputError
+from .compliance import AnyCompliance, Diaphragm
 from .entries import (
     NOT_IN_FILES,
     SEVERAL,
@@ -298,6 +299,7 @@ class Bearing:
     feed : Of tilting pads.
     supply_flow : Of oil to all tilting pads together, in equal parts [m3/s]; None: what the films
         ask for.
+    compliance : How the bore gives way under the film's pressure; None: it keeps its shape.
     profile : Shorthand for the arcs of a usual bore, with its `preload` and `offset`.
     """
 
@@ -314,6 +316,7 @@ class Bearing:
     supply_flow: Annotated[float | None, NOT_IN_FILES] = None
     pockets: Annotated[tuple[Pocket, ...], Key("pocket")] = ()
     textures: Annotated[tuple[Texture, ...], Key("texture")] = ()
+    compliance: AnyCompliance = None
     profile: BearingProfile | None = field(default=None, compare=False)
     preload: Preload | None = field(default=None, compare=False)
     offset: Offset | None = field(default=None, compare=False)
@@ -427,6 +430,7 @@ class Bearing:
     def is_plain(self) -> bool:
         """One concentric 360 degree bore without grooves: the same seen from every angle."""
         smooth = not (self.grooves or self.pockets or self.textures)
+        smooth = smooth and not isinstance(self.compliance, Diaphragm)
         return smooth and all(arc.preload == 0.0 for arc in self.arcs)
 
     @property
@@ -453,6 +457,9 @@ class Bearing:
                 replace(t, start=t.start + angle, end=t.end + angle) for t in self.textures
             ),
             pads=tuple(replace(p, pivot_angle=p.pivot_angle + angle) for p in self.pads),
+            compliance=replace(self.compliance, start=self.compliance.start + angle)
+            if isinstance(self.compliance, Diaphragm)
+            else self.compliance,
             misalignment=(
                 self.misalignment[0] * cos - self.misalignment[1] * sin,
                 self.misalignment[0] * sin + self.misalignment[1] * cos,

@@ -304,6 +304,7 @@ def can_be_mapped(case: Case) -> bool:
     return (
         case.bearing.is_plain
         and case.bearing.is_symmetric
+        and case.bearing.compliance is None
         and case.thermal.model is ThermalModel.ISOTHERMAL
         and case.thermal.expansion is None
         and case.film.cavitation in MAPPED

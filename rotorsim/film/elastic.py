@@ -1,0 +1,229 @@
+"""Bores that give way under pressure: film and shape found together (see docs: theory).
+
+The deflection is linear in the pressure, w = L p. At given displacements of the journal the film's
+state is the one that agrees with its own deflection: Newton's method for w - L p(w) = 0, whose
+matrix I - L A^-1 B (A the film's matrix, B what a deflection adds to continuity) is met by GMRES
+through its products alone. A motion of the journal changes the pressure by the solution of
+(A - B L) p = source, the shape following at once; without L the shape is frozen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from ..arrays import Array
+from ..model import Bearing
+from ..model.compliance import Diaphragm, ElasticLayer, ThinBush
+from .banded import NoFilmError
+from .geometry import CENTER
+from .mesh import FilmMesh
+from .shell import shell_compliance
+from .sources import displacement_sources
+
+if TYPE_CHECKING:
+    from .problem import FilmState
+    from .rupture import Factor
+
+Field = NDArray[Any]
+_TOLERANCE = 1e-11
+"""Of the deflection, relative to the thinnest film."""
+_LINEAR_TOLERANCE = 1e-10
+_ACCEPTED = 1e-3
+"""The same, where cells at the edge of the full film come and go."""
+_SHARES = (0.25, 0.5, 0.75, 1.0)
+_MAX_STEPS = 40
+_LARGEST_STEP = 0.5
+"""Part of the film's thickness by which one step may change it anywhere."""
+
+
+@dataclass
+class ElasticBore:
+    """How a bore gives way on one mesh.
+
+    compliance : callable. From the pressure (n, m) [Pa] to the deflection, outwards (n, m) [m].
+    last : (n, m) array. The deflection found last, where the next search begins.
+    """
+
+    mesh: FilmMesh
+    compliance: Callable[[Field], Field]
+    last: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.last = np.zeros(self.mesh.shape)
+
+    def spread(self, deflection: Field) -> Field:
+        """Deflection at cell centres and faces, (5, n, m), straight between the centres."""
+        mesh, w = self.mesh, deflection
+        size = np.diff(mesh.theta_faces)[:, None]
+        before, ahead = np.roll(size, 1, axis=0), np.roll(w, 1, axis=0)
+        west = (ahead * size + w * before) / (size + before)
+        first = w[:, :1] if mesh.half else _beyond(w[:, :2], mesh.dy[:2])
+        between = (w[:, :-1] * mesh.dy[1:] + w[:, 1:] * mesh.dy[:-1]) / (mesh.dy[1:] + mesh.dy[:-1])
+        last = _beyond(w[:, :-3:-1], mesh.dy[:-3:-1])
+        south = np.concatenate([first, between], axis=1)
+        north = np.concatenate([between, last], axis=1)
+        return np.stack([w, west, np.roll(west, -1, axis=0), south, north])
+
+    def settle(self, film: Callable[[Array], FilmState]) -> FilmState:
+        """Return the film that agrees with its deflection, `film` giving it at any (5, n, m).
+
+        From a rigid bore the compliance is raised by steps: of several shapes that agree, as at the
+        free edge of a shell, this is the one that a bore takes as it is loaded.
+        """
+        state, shares = None, (1.0,)
+        if self.last.any():
+            with suppress(NoFilmError):  # what was found last may belong to another position
+                state = film(self.spread(self.last))
+        if state is None:
+            state, shares = film(np.zeros((5, *self.mesh.shape))), _SHARES
+        for share in shares:
+            state, off = self._agreed(state, film, share)
+        self.last = state.deflection[CENTER]
+        if off > _ACCEPTED:
+            return replace(state, solution=replace(state.solution, converged=False))
+        return state
+
+    def _agreed(
+        self, state: FilmState, film: Callable[[Array], FilmState], share: float
+    ) -> tuple[FilmState, float]:
+        """Newton's method with a part of the compliance; what is missing over the thinnest film."""
+        tolerance = _TOLERANCE if share == 1.0 else _ACCEPTED
+        for _ in range(_MAX_STEPS):
+            deflection = state.deflection[CENTER]
+            missing = share * self.compliance(_loaded(state)) - deflection
+            off = float(np.abs(missing).max()) / state.min_thickness
+            if off <= tolerance:
+                break
+            step = self._newton(state, missing, share)
+            most = float((np.abs(step) / state.center_thickness).max())
+            step = step * min(1.0, _LARGEST_STEP / most)
+            state = film(self.spread(deflection + step))
+        return state, off
+
+    def _newton(self, state: FilmState, missing: Array, share: float) -> Array:
+        factor = state.solution.factor
+
+        def product(flat: Array) -> Array:
+            change = flat.reshape(missing.shape)
+            pressure = factor.solve(displacement_sources(state, self.spread(change)[None]))[0]
+            pressure = np.where(state.solution.full, pressure, 0.0)
+            return (change - share * self.compliance(pressure)).ravel()
+
+        return _solved(product, missing.ravel()).reshape(missing.shape)
+
+    def followed(
+        self,
+        state: FilmState,
+        factor: Factor,
+        pressures: Field,
+        rate: complex = 0.0,
+        weight: Field | None = None,
+    ) -> Field:
+        """Return pressures (k, n, m) with the bore giving way to them, moving at `rate` times w.
+
+        pressures : Those of a bore that keeps its shape.
+        weight : (n, m) array. Of all that is added to continuity.
+        """
+        full = state.solution.full
+
+        def added(pressure: Field) -> Field:
+            deflection = self.compliance(pressure)
+            sources = [
+                displacement_sources(state, self.spread(part)[None])[0] * unit
+                for part, unit in ((np.real(deflection), 1.0), (np.imag(deflection), 1j))
+                if np.any(part) or unit == 1.0
+            ]
+            total = sum(sources)
+            if rate:
+                total = total + rate * self.squeezing(state, pressure)
+            if weight is not None:
+                total = total * weight
+            return np.where(full, _solve_any(factor, np.asarray(total)), 0.0)
+
+        found = []
+        for pressure in pressures:
+            kind = complex if rate or np.iscomplexobj(pressure) else float
+
+            def product(flat: Field, shape: tuple[int, ...] = pressure.shape) -> Field:
+                one = flat.reshape(shape)
+                return (one - added(one)).ravel()
+
+            found.append(_solved(product, pressure.ravel().astype(kind)).reshape(pressure.shape))
+        return np.stack(found)
+
+    def squeezing(self, state: FilmState, pressures: Field) -> Field:
+        """What a bore that gives way at the rates of its deflection adds to continuity."""
+        area = state.problem.rupture.squeezed_area(state.operator, state.solution)
+        moving = np.where(state.operator.fixed, 0.0, -area)
+        if pressures.ndim == 2:
+            return moving * self.compliance(pressures)
+        return np.stack([moving * self.compliance(one) for one in pressures])
+
+
+def _solve_any(factor: Factor, right: Field) -> Field:
+    if not np.iscomplexobj(right):
+        return factor.solve(right[None])[0]
+    parts = factor.solve(np.stack([right.real, right.imag]))
+    return np.asarray(parts[0] + 1j * parts[1])
+
+
+def _beyond(values: Field, sizes: Array) -> Field:
+    """Value (n, 1) at the outer face of the first of two cells, straight on from their centres."""
+    slope = (values[:, :1] - values[:, 1:2]) / (0.5 * (sizes[0] + sizes[1]))
+    return np.asarray(values[:, :1] + 0.5 * sizes[0] * slope)
+
+
+def _loaded(state: FilmState) -> Array:
+    return np.where(state.solution.full, state.solution.pressure, 0.0)
+
+
+def _solved(product: Callable[[Field], Field], right: Field) -> Field:
+    operator = LinearOperator((right.size, right.size), matvec=product, dtype=right.dtype)
+    return np.asarray(gmres(operator, right, rtol=_LINEAR_TOLERANCE, restart=80, maxiter=3)[0])
+
+
+def elastic_bore(bearing: Bearing, mesh: FilmMesh) -> ElasticBore | None:
+    """Return how the bearing's bore gives way; None where it does not."""
+    given = bearing.compliance
+    if isinstance(given, ElasticLayer):
+        return ElasticBore(mesh, lambda pressure: given.deflection * pressure)
+    if isinstance(given, ThinBush):
+        around, along = _ring(given, bearing, mesh), mesh.dy / mesh.dy.sum()
+        shape = (1, mesh.shape[1])
+        return ElasticBore(mesh, lambda p: np.tile((around @ (p @ along))[:, None], shape))
+    if isinstance(given, Diaphragm):
+        cells, matrix = shell_compliance(given, mesh)
+
+        def bent(pressure: Field) -> Field:
+            result = np.zeros(pressure.shape, dtype=pressure.dtype)
+            result.ravel()[cells] = matrix @ pressure.ravel()[cells]
+            return result
+
+        return ElasticBore(mesh, bent)
+    return None
+
+
+def _ring(bush: ThinBush, bearing: Bearing, mesh: FilmMesh) -> Array:
+    """Deflection of a thin ring on springs per pressure around it [m/Pa], (n, n).
+
+    Its wave n times around costs EI (n^2 - 1)^2/r^4 (it bends without stretching), the even one
+    EA/r^2, besides the springs; r is the radius of its middle.
+    """
+    radius = mesh.radius + 0.5 * bush.thickness
+    outer = mesh.radius + bush.thickness
+    springs = bush.stiffness / (2.0 * np.pi * outer * bearing.length) * outer / radius
+    waves = np.arange(mesh.shape[0] // 2)
+    bending = bush.youngs_modulus * bush.thickness**3 / 12.0 / radius**4
+    stiffness = springs + bending * (waves**2 - 1.0) ** 2
+    stiffness[0] = springs + bush.youngs_modulus * bush.thickness / radius**2
+    share = np.where(waves == 0, 0.5, 1.0) / np.pi * (mesh.radius / radius) / stiffness
+    apart = mesh.theta[:, None] - mesh.theta
+    spread = np.tensordot(share, np.cos(waves[:, None, None] * apart), axes=1)
+    return np.asarray(spread * np.diff(mesh.theta_faces))
