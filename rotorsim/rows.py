@@ -195,6 +195,7 @@ QUANTITIES = {
     ),
     "hot_radial_clearance": Quantity("hot radial clearance", "c_hot", "µm", 1e6, digits=4),
     "hot_preload": Quantity("hot preload", "m_hot", digits=3),
+    "deflection": Quantity("elastic deflection", "w_max", "µm", 1e6, digits=3),
     "outlet_temperature": Quantity(
         "oil outlet temperature", "T_out", "°C", 1.0, -ZERO_CELSIUS, digits=3
     ),

@@ -35,6 +35,7 @@ CROSS_CODE_PADS = {"rigid": (0.04, 0.01), "spring": (0.03, 0.03)}
 """K and B; the other program's mesh of 20 x 10 elements is good for 3 % of the stiffness."""
 FILLON_KELVIN = 6.0
 """Pads and clearance that do not deform, against a theory in which they do."""
+FILLON_DEFORMED_KELVIN = 4.0
 
 SECOND_METHOD = 0.001
 """Between the film solver and bilinear finite elements, both extrapolated or on fine meshes."""

@@ -67,6 +67,7 @@ class FilmDynamics:
     mass : (q, q) array or None. Of the pads; None without.
     names : Of the displacements q.
     coupled : How many of them, the first ones, are the journal's.
+    cause : Why A(s) is not K + s C.
     """
 
     turn: Array
@@ -77,6 +78,7 @@ class FilmDynamics:
     mass: Array | None = None
     names: tuple[str, ...] = TRANSLATIONS
     coupled: int = 2
+    cause: str = "oil stored in the ruptured film"
 
     def __call__(self, s: complex) -> ComplexArray:
         """Return A(s), (q, q) [N/m]."""
@@ -253,6 +255,7 @@ def film_dynamics(
         mass=mass,
         names=names,
         coupled=4 if rotations else 2,
+        cause="the bore gives way" if elastic else "oil stored in the ruptured film",
     )
 
 
@@ -407,7 +410,7 @@ def stored_oil_warnings(
     if change < _NOTICEABLE:
         return ()
     return (
-        "K and C depend on the whirl frequency (oil stored in the ruptured film): they are those "
+        f"K and C depend on the whirl frequency ({dynamics.cause}): they are those "
         f"at {ratio:.3g} of the shaft's, where the critical mass is exact; for others give "
         "film.frequency_ratio",
     )

@@ -84,7 +84,8 @@ class FullCoefficients:
 
     names : Degrees of freedom: x, y [m]; theta_x, theta_y, the journal's rotations about x and y
         through the bearing's mid-plane [rad]. Then of each loaded pad, counted from 1, tilt_1
-        [rad], and where its pivot has them pivot_1 (outwards) [m] and pitch_1 [rad].
+        [rad], and where its pivot has them pivot_1 (outwards) [m] and pitch_1 [rad]; of a pad that
+        bends bend_1_1 to bend_1_4 [m].
     stiffness, damping, mass : (q, q) arrays. K_ij = -dQ_i/dq_j, C_ij = -dQ_i/dq_j-dot, Q the film's
         forces [N] and moments [N m] on journal and pads, and the pivots' on the pads. The mass is
         the pads' own.
@@ -211,7 +212,7 @@ class OperatingPoint:
         K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F on the journal, load frame.
     coefficient_frequency_ratio : float or None
         Whirl frequency over shaft frequency at which they hold; None: at any. Oil stored in a
-        mass-conserving film makes them depend on it: they are given at the threshold's whirl
+        mass-conserving film, or a bore that gives way, makes them depend on it: they are given at the threshold's whirl
         frequency, and at half the shaft's where there is no threshold.
     frequency_coefficients : FrequencyCoefficients or None
         Stiffness and damping at the ratios of ``film.frequency_ratio``.
@@ -255,6 +256,10 @@ class OperatingPoint:
     hot_preload : float or None
         1 - (assembled clearance)/(machined clearance) when hot, the mean of the pads or of the
         lobes.
+    deflection : float or None
+        Largest deflection of pads or bore under the film's pressure [m]; None where they are rigid.
+    deformation_response : str or None
+        ``following`` or ``frozen``: what that shape does in K and C; None where they are rigid.
     outlet_temperature : float or None
         Mean of the oil that leaves at both ends [K]: supply temperature plus the heat that the oil
         carries off over rho c_p times the side flow. THD with ``inlet = mixing`` only: otherwise
@@ -297,6 +302,8 @@ class OperatingPoint:
     shaft_temperature: float | None = None
     hot_radial_clearance: float | None = None
     hot_preload: float | None = None
+    deflection: float | None = None
+    deformation_response: str | None = None
     outlet_temperature: float | None = None
     coefficient_frequency_ratio: float | None = None
     frequency_coefficients: FrequencyCoefficients | None = None

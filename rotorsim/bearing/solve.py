@@ -38,7 +38,7 @@ from .dynamics import (
     stored_oil_warnings,
     with_rotations,
 )
-from .operating_point import FilmFields, OperatingPoint, failed_point
+from .operating_point import FilmFields, OperatingPoint, PadResult, failed_point
 from .pads import lacking_pads, pad_results, supply_warnings, unloaded_warnings
 from .whirl import rigid_threshold
 
@@ -210,6 +210,10 @@ def operating_point(
         shaft_temperature=_shaft_temperature(solution),
         hot_radial_clearance=None if hot is None else hot.radial_clearance,
         hot_preload=None if hot is None else _mean_preload(hot),
+        deflection=_deflection(solution, pads),
+        deformation_response=None
+        if problem.elastic is None and not any(pad.youngs_modulus for pad in case.bearing.pads)
+        else str(case.film.deformation_response),
         outlet_temperature=_outlet_temperature(case, numbers["side_flow"], heat, demand),
         **_flow_regimes(solution),
         fields=_fields(solution, fraction) if keep_fields else None,
@@ -235,6 +239,15 @@ def _min_film_thickness(solution: FilmSolution) -> float:
     if bearing.is_plain and bearing.is_symmetric and state.deflection is None:
         return bearing.radial_clearance - math.hypot(*state.displacement)
     return state.min_thickness
+
+
+def _deflection(solution: FilmSolution, pads: Sequence[PadResult]) -> float | None:
+    """Largest elastic deflection of pads or bore [m]; None where they are rigid."""
+    if solution.state.deflection is not None:
+        return float(np.abs(solution.state.deflection).max())
+    if not any(pad.youngs_modulus for pad in solution.problem.bearing.pads):
+        return None
+    return max(pad.deflection for pad in pads)
 
 
 def _mean_preload(bearing: Bearing) -> float:

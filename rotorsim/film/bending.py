@@ -8,8 +8,9 @@ mid-thickness radius, so that (Castigliano) it moves the place a radially by
                               + cos(a - c) cos(b - c)/kGA] r dc,
 
 k = 5/6, E the modulus of a beam: a pad that bends by micrometres is free to curve across, whatever
-its width. The eigenfunctions of f are the shapes v of generalised displacements, positive outwards,
-each held by a spring: w = sum_k b_k v_k, b_k = int v_k q/k_k for a load q, as the film finds it.
+its width. The deflections under an even load and one that rises straight from the pivot are mixed
+(Ritz) into shapes v of generalised displacements, positive outwards, each held by a spring of its
+own: w = sum_k b_k v_k, b_k = int v_k q/k_k for a load q, as the film finds it.
 """
 
 from __future__ import annotations
@@ -19,12 +20,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from scipy.linalg import eigh
 
 from ..arrays import Array
 from ..model import Pad
 
 MODES = 2
-"""Shapes on either side of the pivot; they leave 0.3 % of the deflection under even pressure."""
+"""Shapes on either side of the pivot: exact for loads that are straight along it."""
 _POINTS = 80
 """Of the midpoint rule along one side."""
 _SHEAR_AREA = 5.0 / 6.0
@@ -36,26 +38,23 @@ class BendingModes:
 
     side : Angle from the pivot to the edge, negative for the leading one [rad].
     points, values : (n,), (modes, n) arrays. Distances from the pivot [rad] and the shapes there.
-    eigenvalues : (modes,) array. Of the compliance [rad m/N].
+    loads : (modes, n) array. Under which they are the deflection [N/m/rad].
+    stiffness : (modes,) array. Spring of each shape [N/m].
     """
 
     side: float
     points: Array
     values: Array
-    eigenvalues: Array
+    loads: Array
+    stiffness: Array
     section: tuple[float, float, float]
-
-    @property
-    def stiffness(self) -> Array:
-        """Spring of each shape [N/m], (modes,)."""
-        return abs(self.side) / self.eigenvalues
 
     def at(self, angle: Array) -> Array:
         """Shapes at angles from the pivot [rad], (modes, ...); 0 on the other side."""
         away = np.maximum(angle * math.copysign(1.0, self.side), 0.0)
         kernel = _compliance(away[..., None], self.points, *self.section)
         weight = abs(self.side) / self.points.size
-        return np.moveaxis(kernel @ (weight * self.values / self.eigenvalues[:, None]).T, -1, 0)
+        return np.moveaxis(kernel @ (weight * self.loads).T, -1, 0)
 
     def mean(self, function: Array) -> Array:
         """Mean over the side of each shape times a function at the points, (modes,)."""
@@ -85,8 +84,10 @@ def pad_bending(pad: Pad, radius: float, length: float) -> tuple[BendingModes, B
 @lru_cache(maxsize=64)
 def _modes(side: float, section: tuple[float, float, float]) -> BendingModes:
     points = (np.arange(_POINTS) + 0.5) / _POINTS * abs(side)
-    kernel = _compliance(points[:, None], points, *section) * (abs(side) / _POINTS)
-    values, vectors = np.linalg.eigh(kernel)
-    shapes = math.sqrt(_POINTS) * vectors[:, : -MODES - 1 : -1].T
-    shapes *= np.sign(shapes[:, -1:])
-    return BendingModes(side, points, shapes, values[: -MODES - 1 : -1], section)
+    loads = np.polynomial.legendre.legvander(2.0 * points / abs(side) - 1.0, MODES - 1).T
+    bent = loads @ _compliance(points[:, None], points, *section) * (abs(side) / _POINTS)
+    stiffness, mixed = eigh(bent @ loads.T / _POINTS, bent @ bent.T / _POINTS)
+    mixed *= np.sign(mixed.T @ bent[:, -1])
+    return BendingModes(
+        side, points, mixed.T @ bent, mixed.T @ loads, abs(side) * stiffness, section
+    )

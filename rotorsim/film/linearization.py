@@ -68,7 +68,7 @@ class _Motions:
     def pressures(
         self, right: NDArray[Any], factor: Factor, rate: complex = 0.0, weight: Any = None
     ) -> NDArray[Any]:
-        """Return the perturbed pressures of each right-hand side; the shape follows at `rate` times itself.
+        """Return perturbed pressures of each right-hand side; the shape follows at `rate` times.
 
         weight : See `RuptureCondition.dynamic_factor`.
         """

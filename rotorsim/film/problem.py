@@ -188,8 +188,8 @@ def _film_state(
     layers: LayerIntegrals,
     deflection: Array | None,
     velocity: ArrayLike | None,
-    start: NDArray[np.bool_] | None,
-    frozen: NDArray[np.bool_] | None,
+    start: Booleans | None,
+    frozen: Booleans | None,
 ) -> FilmState:
     geometry, mesh = problem.geometry, problem.mesh
     thickness = geometry.thickness(displacement)

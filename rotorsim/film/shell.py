@@ -4,8 +4,8 @@ Donnell's shell with u along the arc x, v along the axis y and w outwards:
 
     membrane strains u_x + w/R, v_y, u_y + v_x; curvatures w_xx, w_yy, 2 w_xy.
 
-A width W(x) that changes is stretched out: y = eta W/2, so that f_y = 2 f_eta/W and f_x = f_xi - eta
-g f_eta with g = W'/W, and the edges at which the shell is built in are lines of the splines.
+A width W(x) that changes is stretched out: y = eta W/2, so that f_y = 2 f_eta/W and
+f_x = f_xi - eta g f_eta with g = W'/W, and the edges at which the shell is built in are lines of the splines.
 """
 
 from __future__ import annotations
@@ -76,10 +76,9 @@ def shell_compliance(shell: Diaphragm, mesh: FilmMesh) -> tuple[NDArray[np.intp]
         cells, own = _cell_means(shell, mesh, around, across, (wide, narrow), mirrored)
         loads.append(own)
     area = (mesh.dx[:, None] * mesh.dy).ravel()[cells]
-    right = np.zeros((stiffness.shape[0], cells.size))
-    right[-count:] = sum(loads).T * area
-    deflected = splu(stiffness).solve(right)[-count:]
-    return cells, loads[0] @ deflected
+    outwards = np.eye(stiffness.shape[0])[:, -count:]
+    compliance = splu(stiffness).solve(outwards)[-count:]
+    return cells, loads[0] @ compliance @ (sum(loads).T * area)
 
 
 def _stiffness(
@@ -148,7 +147,7 @@ def _cell_means(
     theta = mesh.theta[:, None] + np.diff(mesh.theta_faces)[:, None] * share
     x = mesh.radius * ((theta - shell.start) % (2.0 * np.pi))
     y = (mesh.y[:, None] + mesh.dy[:, None] * share) * (-1.0 if mirrored else 1.0)
-    n, m = mesh.shape
+    m = mesh.shape[1]
     inside_x = x < around.last
     on_arc, on_width = np.flatnonzero(inside_x.any(axis=1)), np.arange(m)
     cells, means = [], []

@@ -316,7 +316,7 @@ class Bearing:
     supply_flow: Annotated[float | None, NOT_IN_FILES] = None
     pockets: Annotated[tuple[Pocket, ...], Key("pocket")] = ()
     textures: Annotated[tuple[Texture, ...], Key("texture")] = ()
-    compliance: AnyCompliance = None
+    compliance: AnyCompliance | None = None
     profile: BearingProfile | None = field(default=None, compare=False)
     preload: Preload | None = field(default=None, compare=False)
     offset: Offset | None = field(default=None, compare=False)

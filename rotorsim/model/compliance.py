@@ -86,4 +86,4 @@ class Diaphragm:
 
 COMPLIANCES = {kind.kind: kind for kind in (ElasticLayer, ThinBush, Diaphragm)}
 Compliance = ElasticLayer | ThinBush | Diaphragm
-AnyCompliance = Annotated[Compliance | None, Made(COMPLIANCES)]
+AnyCompliance = Annotated[Compliance, Made(COMPLIANCES)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from film_cases import reference_rows
 from pad_cases import MASSLESS, equal_pads, pad_case
 from tolerances import (
     CROSS_CODE_PADS,
+    FILLON_DEFORMED_KELVIN,
     FILLON_KELVIN,
     SOMEYA_DAMPING,
     SOMEYA_SOMMERFELD,
@@ -82,10 +84,23 @@ def test_five_pads_of_another_program(row):
     np.testing.assert_allclose(ours, [row["Bxx"], row["Byy"]], rtol=tolerance[1])
 
 
-def _fillon(speed_rpm: float, expansion: Expansion | None = None):
-    pads = equal_pads(4, first_deg=45.0, arc_deg=75.0, preload=0.47, thickness=0.02)
+FILLON_SUPPLY = 4e-3 / 60.0
+"""[m3/s]: what the films lose at their ends at 4000 rpm; the source's flow is not in our data."""
+
+
+def _fillon(
+    speed_rpm: float,
+    *,
+    supply_flow: float | None = None,
+    expansion: Expansion | None = None,
+    youngs_modulus: float | None = None,
+):
+    pads = tuple(
+        replace(pad, youngs_modulus=youngs_modulus)
+        for pad in equal_pads(4, first_deg=45.0, arc_deg=75.0, preload=0.47, thickness=0.02)
+    )
     case = Case(
-        bearing=Bearing(0.05, 0.07, 148e-6, pads=pads),
+        bearing=Bearing(0.05, 0.07, 148e-6, pads=pads, supply_flow=supply_flow),
         lubricant=Lubricant(ExponentialViscosity(0.0277, 313.15, 0.0341), 860.0, 1951.8, 0.149),
         film=FilmSettings(mesh=MeshSize(80, 12, 12, 8)),
         thermal=ThermalSettings(
@@ -97,35 +112,36 @@ def _fillon(speed_rpm: float, expansion: Expansion | None = None):
         ),
         target=LoadTarget(10e3),
     )
-    return solve_case(case, speed_rpm * 2.0 * math.pi / 60.0)[0]
+    point = solve_case(case, speed_rpm * 2.0 * math.pi / 60.0)[0]
+    assert point.converged, point.message
+    assert abs(point.heat_imbalance) < 1e-3
+    return point
+
+
+def _off_theory(**settings) -> np.ndarray:
+    """Highest pad temperature over the theory's at each speed [K]; it rises with the speed."""
+    rows = reference_rows("fillon1992_pad_temperatures.csv")
+    hottest = np.array(
+        [max(pad.max_temperature for pad in _fillon(row["rpm"], **settings).pads) for row in rows]
+    )
+    assert np.all(np.diff(hottest) > 0.0)
+    return hottest - ZERO_CELSIUS - [row["theory"] for row in rows]
+
+
+STEEL = Expansion(shaft=12e-6, bush=12e-6, reference_temperature=313.15)
 
 
 def test_pad_temperatures_of_fillon():
-    hottest = []
-    for row in reference_rows("fillon1992_pad_temperatures.csv"):
-        point = _fillon(row["rpm"])
-        assert point.converged, point.message
-        assert abs(point.heat_imbalance) < 1e-3
-        hottest.append(max(pad.max_temperature for pad in point.pads) - ZERO_CELSIUS)
-        # Neither pads nor clearance deform here.
-        assert hottest[-1] == pytest.approx(row["theory"], abs=FILLON_KELVIN)
-    assert np.all(np.diff(hottest) > 0.0)
+    """Neither pads nor clearance deform; the films draw what they ask for."""
+    assert np.abs(_off_theory()).max() < FILLON_KELVIN
+
+
+def test_pad_temperatures_of_fillon_with_deformation():
+    """Growth and bending of pads, clearance of hot solids, and a supply that fills the housing."""
+    off = _off_theory(supply_flow=FILLON_SUPPLY, expansion=STEEL, youngs_modulus=210e9)
+    assert np.abs(off).max() < FILLON_DEFORMED_KELVIN
 
 
 @pytest.mark.slow
-def test_pad_temperatures_of_fillon_with_hot_clearance():
-    """Growth and bending of hot pads bring the slope over speed nearer to the theory's.
-
-    At 1000 rpm the oil that comes round whole warms the film by 5 K more than the theory's.
-    """
-    steel = Expansion(shaft=12e-6, bush=12e-6, reference_temperature=313.15)
-    off = {None: [], steel: []}
-    for row in reference_rows("fillon1992_pad_temperatures.csv"):
-        for expansion, found in off.items():
-            point = _fillon(row["rpm"], expansion)
-            assert point.converged, point.message
-            hottest = max(pad.max_temperature for pad in point.pads) - ZERO_CELSIUS
-            found.append(hottest - row["theory"])
-    assert np.abs(off[steel][1:]).max() < 4.0
-    assert off[steel][0] < FILLON_KELVIN
-    assert np.ptp(off[steel]) < 0.8 * np.ptp(off[None])
+def test_hot_clearance_brings_the_slope_over_speed_nearer_to_fillon():
+    assert np.ptp(_off_theory(expansion=STEEL)) < 0.8 * np.ptp(_off_theory())
