@@ -31,7 +31,8 @@ _POINT_ROWS = (
     "eccentricity_ratio", "attitude_angle", "load", "sommerfeld_number", "min_film_thickness",
     "max_pressure", "max_temperature", "mean_temperature", "shaft_temperature",
     "hot_radial_clearance", "hot_preload", "deflection", "outlet_temperature", "friction_force",
-    "power_loss", "side_flow", "critical_mass", "whirl_frequency_ratio", "wall_heat_share", "heat_imbalance",
+    "power_loss", "side_flow", "critical_mass", "whirl_frequency_ratio", "wall_heat_share",
+    "heat_imbalance",
     *_TURBULENT,
 )  # fmt: skip
 """Quantities of an operating point, in the order in which they are shown."""

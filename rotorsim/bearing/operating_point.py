@@ -212,8 +212,8 @@ class OperatingPoint:
         K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F on the journal, load frame.
     coefficient_frequency_ratio : float or None
         Whirl frequency over shaft frequency at which they hold; None: at any. Oil stored in a
-        mass-conserving film, or a bore that gives way, makes them depend on it: they are given at the threshold's whirl
-        frequency, and at half the shaft's where there is no threshold.
+        mass-conserving film, or a bore that gives way, makes them depend on it: they are given at
+        the threshold's whirl frequency, and at half the shaft's where there is no threshold.
     frequency_coefficients : FrequencyCoefficients or None
         Stiffness and damping at the ratios of ``film.frequency_ratio``.
     supply_flow : tuple of float

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from ..arrays import Array
 from ..model import Bearing
@@ -24,7 +23,6 @@ from ..model.compliance import Diaphragm, ElasticLayer, ThinBush
 from .banded import NoFilmError
 from .geometry import CENTER
 from .mesh import FilmMesh
-from .shell import shell_compliance
 from .sources import displacement_sources
 
 if TYPE_CHECKING:
@@ -77,15 +75,15 @@ class ElasticBore:
         From a rigid bore the compliance is raised by steps: of several shapes that agree, as at the
         free edge of a shell, this is the one that a bore takes as it is loaded.
         """
-        state, shares = None, (1.0,)
+        state, off = None, 0.0
         if self.last.any():
             with suppress(NoFilmError):  # what was found last may belong to another position
-                state = film(self.spread(self.last))
-        if state is None:
-            state, shares = film(np.zeros((5, *self.mesh.shape))), _SHARES
-        for share in shares:
-            state, off = self._agreed(state, film, share)
-        self.last = state.deflection[CENTER]
+                state, off = self._agreed(film(self.spread(self.last)), film, 1.0)
+        if state is None or off > _ACCEPTED:
+            state = film(np.zeros((5, *self.mesh.shape)))
+            for share in _SHARES:
+                state, off = self._agreed(state, film, share)
+        self.last = _deflection(state)
         if off > _ACCEPTED:
             return replace(state, solution=replace(state.solution, converged=False))
         return state
@@ -95,17 +93,17 @@ class ElasticBore:
     ) -> tuple[FilmState, float]:
         """Newton's method with a part of the compliance; what is missing over the thinnest film."""
         tolerance = _TOLERANCE if share == 1.0 else _ACCEPTED
-        for _ in range(_MAX_STEPS):
-            deflection = state.deflection[CENTER]
+        for number in range(_MAX_STEPS + 1):
+            deflection = _deflection(state)
             missing = share * self.compliance(_loaded(state)) - deflection
             off = float(np.abs(missing).max()) / state.min_thickness
-            if off <= tolerance:
-                break
+            if off <= tolerance or number == _MAX_STEPS:
+                return state, off
             step = self._newton(state, missing, share)
             most = float((np.abs(step) / state.center_thickness).max())
             step = step * min(1.0, _LARGEST_STEP / most)
             state = film(self.spread(deflection + step))
-        return state, off
+        raise AssertionError  # the last step returns
 
     def _newton(self, state: FilmState, missing: Array, share: float) -> Array:
         factor = state.solution.factor
@@ -170,7 +168,7 @@ class ElasticBore:
 def _solve_any(factor: Factor, right: Field) -> Field:
     if not np.iscomplexobj(right):
         return factor.solve(right[None])[0]
-    parts = factor.solve(np.stack([right.real, right.imag]))
+    parts = factor.solve(np.stack([np.real(right), np.imag(right)]))
     return np.asarray(parts[0] + 1j * parts[1])
 
 
@@ -180,12 +178,20 @@ def _beyond(values: Field, sizes: Array) -> Field:
     return np.asarray(values[:, :1] + 0.5 * sizes[0] * slope)
 
 
+def _deflection(state: FilmState) -> Array:
+    assert state.deflection is not None
+    return np.asarray(state.deflection[CENTER])
+
+
 def _loaded(state: FilmState) -> Array:
     return np.where(state.solution.full, state.solution.pressure, 0.0)
 
 
 def _solved(product: Callable[[Field], Field], right: Field) -> Field:
-    operator = LinearOperator((right.size, right.size), matvec=product, dtype=right.dtype)
+    from scipy.sparse.linalg import LinearOperator, gmres
+
+    linear: Any = LinearOperator
+    operator = linear((right.size, right.size), matvec=product, dtype=right.dtype)
     return np.asarray(gmres(operator, right, rtol=_LINEAR_TOLERANCE, restart=80, maxiter=3)[0])
 
 
@@ -199,6 +205,8 @@ def elastic_bore(bearing: Bearing, mesh: FilmMesh) -> ElasticBore | None:
         shape = (1, mesh.shape[1])
         return ElasticBore(mesh, lambda p: np.tile((around @ (p @ along))[:, None], shape))
     if isinstance(given, Diaphragm):
+        from .shell import shell_compliance
+
         cells, matrix = shell_compliance(given, mesh)
 
         def bent(pressure: Field) -> Field:

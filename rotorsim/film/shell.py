@@ -5,12 +5,15 @@ Donnell's shell with u along the arc x, v along the axis y and w outwards:
     membrane strains u_x + w/R, v_y, u_y + v_x; curvatures w_xx, w_yy, 2 w_xy.
 
 A width W(x) that changes is stretched out: y = eta W/2, so that f_y = 2 f_eta/W and
-f_x = f_xi - eta g f_eta with g = W'/W, and the edges at which the shell is built in are lines of the splines.
+f_x = f_xi - eta g f_eta with g = W'/W, and the edges at which the shell is built in are lines of
+the splines.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,14 +74,14 @@ def shell_compliance(shell: Diaphragm, mesh: FilmMesh) -> tuple[NDArray[np.intp]
         _Line(-1.0, 1.0, _SPANS[1], (True, True)),
     )
     stiffness, count = _stiffness(shell, mesh.radius, around, across, (wide, narrow))
-    cells, loads = [], []
-    for mirrored in (False, True) if mesh.half else (False,):
-        cells, own = _cell_means(shell, mesh, around, across, (wide, narrow), mirrored)
-        loads.append(own)
+    cells, load = _cell_means(shell, mesh, around, across, (wide, narrow), mirrored=False)
+    both = load
+    if mesh.half:
+        both = load + _cell_means(shell, mesh, around, across, (wide, narrow), mirrored=True)[1]
     area = (mesh.dx[:, None] * mesh.dy).ravel()[cells]
     outwards = np.eye(stiffness.shape[0])[:, -count:]
-    compliance = splu(stiffness).solve(outwards)[-count:]
-    return cells, loads[0] @ compliance @ (sum(loads).T * area)
+    compliance = np.asarray(splu(stiffness).solve(outwards))[-count:]
+    return cells, load @ compliance @ (both.T * area)
 
 
 def _stiffness(
@@ -90,12 +93,12 @@ def _stiffness(
     slope = (widths[1] - widths[0]) / around.last
     eta_at, g, scale = np.tile(eta, x.size), slope / width, 2.0 / width
 
-    def part(dx: int, dy: int, slopes: bool) -> sparse.csr_matrix:
+    def part(dx: int, dy: int, slopes: bool) -> Any:
         return sparse.kron(
             around.values(x, dx, slopes), across.values(eta, dy, slopes), format="csr"
         )
 
-    def weighted(*terms: tuple[Array | float, sparse.csr_matrix]) -> sparse.csr_matrix:
+    def weighted(*terms: tuple[Array | float, Any]) -> Any:
         return sum(sparse.diags(np.broadcast_to(f, width.shape)) @ m for f, m in terms)
 
     flat, steep = {}, {}
@@ -119,7 +122,7 @@ def _stiffness(
     nu = shell.poisson_ratio
     stretching = shell.youngs_modulus * shell.thickness / (1.0 - nu**2)
 
-    def energy(strains: list[sparse.csr_matrix], modulus: float) -> sparse.csr_matrix:
+    def energy(strains: Sequence[Any], modulus: float) -> Any:
         a, b, c = strains
         both = a.T @ weight @ b
         return modulus * (
@@ -135,7 +138,7 @@ def _stiffness(
     curvature = [sparse.hstack([none, none, one]) for one in (w_xx, w_yy, 2.0 * w_xy)]
     whole = energy(membrane, stretching)
     whole = whole + energy(curvature, stretching * shell.thickness**2 / 12.0)
-    return sparse.csc_matrix(whole), w_xx.shape[1]
+    return sparse.csc_matrix(whole), int(w_xx.shape[1])
 
 
 def _cell_means(

@@ -120,13 +120,13 @@ def test_stiff_pads_do_not_bend_and_frozen_ones_keep_their_shape():
 
 
 # -- bores ---------------------------------------------------------------------------------------
-def _bore(compliance, target=EccentricityTarget(0.6), *, mesh=(80, 16), **settings) -> Case:
+def _bore(compliance, *, mesh=(80, 16), **settings) -> Case:
     return Case(
         bearing=Bearing(0.05, 0.06, 100e-6, compliance=compliance),
         lubricant=Lubricant(ExponentialViscosity(0.02, 313.15, 0.0), 860.0, 2000.0, 0.13),
         film=FilmSettings(inception="free", mesh=MeshSize(*mesh, 8, 4), **settings),
         thermal=ThermalSettings(model="isothermal"),
-        target=target,
+        target=EccentricityTarget(0.6),
     )
 
 
@@ -201,7 +201,7 @@ def test_a_long_flat_shell_is_a_strip_built_in_on_both_sides():
     rigidity = STEEL * thickness**3 / 12.0 / (1.0 - 0.09)
     expected = 1e5 * np.maximum(0.25 * wide**2 - y**2, 0.0) ** 2 / (24.0 * rigidity)
     np.testing.assert_allclose(deflection[middle], expected, atol=0.01 * expected.max())
-    beyond = (np.abs(theta) > 0.031) & (mesh.supply[:, 0] < 0)
+    beyond = (np.abs(theta) > 0.034) & (mesh.supply[:, 0] < 0)
     assert beyond.any()
     assert np.abs(deflection[beyond]).max() == 0.0
 
