@@ -80,7 +80,8 @@ def shell_compliance(shell: Diaphragm, mesh: FilmMesh) -> tuple[NDArray[np.intp]
         both = load + _cell_means(shell, mesh, around, across, (wide, narrow), mirrored=True)[1]
     area = (mesh.dx[:, None] * mesh.dy).ravel()[cells]
     outwards = np.eye(stiffness.shape[0])[:, -count:]
-    compliance = np.asarray(splu(stiffness).solve(outwards))[-count:]
+    factor: Any = splu(stiffness)
+    compliance = factor.solve(outwards)[-count:]
     return cells, load @ compliance @ (both.T * area)
 
 
