@@ -87,7 +87,7 @@ def shell_compliance(shell: Diaphragm, mesh: FilmMesh) -> tuple[NDArray[np.intp]
 
 def _stiffness(
     shell: Diaphragm, radius: float, around: _Line, across: _Line, widths: tuple[float, float]
-) -> tuple[sparse.csc_matrix, int]:
+) -> tuple[Any, int]:
     """Stiffness matrix over u, v and w, and how many of the unknowns, the last, are w's."""
     (x, along), (eta, aside) = around.rule(), across.rule()
     width = np.repeat(np.interp(x, [0.0, around.last], widths), eta.size)
