@@ -111,7 +111,8 @@ def point_rows(point: OperatingPoint) -> list[Row]:
         digits = QUANTITIES[name].digits
         text = point_text(point, name, 4 if digits == 3 else digits)
         if text != "-" or name not in _THERMAL:
-            rows.append(Row(QUANTITIES[name].label, text, QUANTITIES[name].unit))
+            unit = QUANTITIES[name].unit if text[-1:].isdigit() else ""
+            rows.append(Row(QUANTITIES[name].label, text, unit))
     factor, unit = QUANTITIES["side_flow"].factor, QUANTITIES["side_flow"].unit
     for k, flow in enumerate(point.supply_flow, start=1):
         rows.append(Row(f"supply flow of groove {k}", number(flow * factor), unit))
