@@ -32,6 +32,7 @@ from .rupture import (
     PressureSolution,
     Recesses,
     RuptureCondition,
+    Terms,
     rupture_condition,
 )
 
@@ -175,9 +176,15 @@ def film_state(
     Raises NoFilmError: The walls touch.
     """
     displacement = np.array(displacement, dtype=float)
+    squeeze = None
+    if velocity is not None and np.any(velocity):
+        shapes = problem.geometry.displacements.shapes[:, CENTER]
+        squeeze = np.tensordot(np.asarray(velocity, dtype=float), shapes, axes=1)
+    region = problem.mesh.region if problem.anchored else None
+    terms = Terms(squeeze, start, region, frozen)
 
     def film(deflection: Array | None) -> FilmState:
-        return _film_state(problem, displacement, layers, deflection, velocity, start, frozen)
+        return _film_state(problem, displacement, layers, terms, deflection)
 
     return film(None) if problem.elastic is None else problem.elastic.settle(film)
 
@@ -186,12 +193,10 @@ def _film_state(
     problem: FilmProblem,
     displacement: Array,
     layers: LayerIntegrals,
+    terms: Terms,
     deflection: Array | None,
-    velocity: ArrayLike | None,
-    start: Booleans | None,
-    frozen: Booleans | None,
 ) -> FilmState:
-    geometry, mesh = problem.geometry, problem.mesh
+    geometry = problem.geometry
     thickness = geometry.thickness(displacement)
     if deflection is not None:
         thickness += deflection
@@ -202,17 +207,7 @@ def _film_state(
     laminar = layers if layers.turbulent is None else layers.turbulent.laminar
     layers = problem.flow_law.integrals(laminar, thickness[CENTER], problem.surface_speed)
     operator = film_operator(problem.topology, thickness, layers, problem.surface_speed)
-    squeeze = None
-    if velocity is not None and np.any(velocity):
-        shapes = geometry.displacements.shapes[:, CENTER]
-        squeeze = np.tensordot(np.asarray(velocity, dtype=float), shapes, axes=1)
-    operator, solution = problem.rupture.solve(
-        operator,
-        squeeze=squeeze,
-        start=start,
-        region=mesh.region if problem.anchored else None,
-        frozen=frozen,
-    )
+    operator, solution = problem.rupture.solve(operator, terms)
     force = geometry.forces(solution.pressure * operator.area)
     return FilmState(
         problem, displacement, thickness, operator, layers, solution, force, deflection

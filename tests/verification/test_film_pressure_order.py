@@ -17,7 +17,7 @@ from rotorsim.film.geometry import film_geometry
 from rotorsim.film.layers import layer_integrals
 from rotorsim.film.mesh import build_mesh
 from rotorsim.film.operator import face_topology, film_operator
-from rotorsim.film.rupture import rupture_condition
+from rotorsim.film.rupture import Terms, rupture_condition
 from rotorsim.model import Bearing, Cavitation, FilmSettings, Inception, MeshSize
 
 LENGTH = 0.08
@@ -117,7 +117,7 @@ def solve(exact: Manufactured, level: int) -> float:
     # continuity in a cell: inflow - squeeze*area = 0
     squeeze = left_over(exact, mesh) / operator.area
     condition = rupture_condition(Cavitation.FULL_SOMMERFELD)
-    _, solved = condition.solve(operator, squeeze=squeeze)
+    _, solved = condition.solve(operator, Terms(squeeze))
     wanted = exact.pressure(t, y)
     return float(np.abs(solved.pressure - wanted).max() / np.abs(wanted).max())
 

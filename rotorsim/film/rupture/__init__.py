@@ -7,7 +7,7 @@ object.
 from __future__ import annotations
 
 from ...model import Cavitation
-from .base import Factor, PressureSolution, RuptureCondition
+from .base import Factor, PressureSolution, RuptureCondition, Terms
 from .bordered import BorderedFactor
 from .mass_conserving import MassConserving
 from .recesses import FedFilm, Recesses
@@ -32,5 +32,5 @@ def rupture_condition(name: Cavitation, supply: OilSupply | None = None) -> Rupt
 
 __all__ = [
     "BorderedFactor", "Factor", "FedFilm", "OilSupply", "PressureSolution", "Recesses",
-    "RuptureCondition", "rupture_condition",
+    "RuptureCondition", "Terms", "rupture_condition",
 ]  # fmt: skip

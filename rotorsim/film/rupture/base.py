@@ -52,6 +52,25 @@ class PressureSolution:
         return np.asarray(self.full & (self.pressure == self.raw), dtype=bool)
 
 
+@dataclass(frozen=True)
+class Terms:
+    """What a film is solved under, besides its operator.
+
+    squeeze : (n, m) array or None. dh/dt [m/s]; None: at rest.
+    start : (n, m) bool array or None. Cells taken as full in the first step (a neighbouring
+        solution's).
+    region : (n,) int array or None. Stretches of film (see `FilmMesh.region`), where a ruptured
+        film must stay ruptured up to the next inception.
+    frozen : (n, m) bool array or None. The full cells, taken as given: one linear solve,
+        `violations` telling what it leaves.
+    """
+
+    squeeze: Array | None = None
+    start: Booleans | None = None
+    region: NDArray[np.int64] | None = None
+    frozen: Booleans | None = None
+
+
 class RuptureCondition(Protocol):
     """What the film does where it would pull."""
 
@@ -69,24 +88,9 @@ class RuptureCondition(Protocol):
         """
         ...
 
-    def solve(
-        self,
-        operator: FilmOperator,
-        *,
-        squeeze: Array | None = None,
-        start: Booleans | None = None,
-        region: NDArray[np.int64] | None = None,
-        frozen: Booleans | None = None,
-    ) -> tuple[FilmOperator, PressureSolution]:
+    def solve(self, operator: FilmOperator, terms: Terms) -> tuple[FilmOperator, PressureSolution]:
         """Solve for the pressure of the operator's film.
 
-        squeeze : (n, m) array. dh/dt [m/s].
-        start : (n, m) bool array. Cells taken as full in the first step (a neighbouring
-            solution's).
-        region : (n,) int array. Stretches of film (see `FilmMesh.region`), where a ruptured film
-            must stay ruptured up to the next inception.
-        frozen : (n, m) bool array. The full cells, taken as given: one linear solve, `violations`
-            telling what it leaves.
         Returns FilmOperator: With the Couette flow that the ruptured film carries.
         Returns PressureSolution:
         """

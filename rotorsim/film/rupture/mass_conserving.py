@@ -20,7 +20,7 @@ from ...arrays import Array, Booleans
 from ..banded import SingularFilmError, column_order
 from ..kernels import kernel
 from ..operator import FilmOperator
-from .base import Factor, PressureSolution, with_fixed
+from .base import Factor, PressureSolution, Terms, with_fixed
 from .bordered import BorderedFactor
 from .reynolds import Reynolds
 from .starvation import OilSupply
@@ -115,18 +115,9 @@ class MassConserving:
     conserves_mass: bool = field(default=True, init=False)
     conserves_oil: bool = field(default=True, init=False)
 
-    def solve(
-        self,
-        operator: FilmOperator,
-        *,
-        squeeze: Array | None = None,
-        start: Booleans | None = None,
-        region: NDArray[np.int64] | None = None,
-        frozen: Booleans | None = None,
-    ) -> tuple[FilmOperator, PressureSolution]:
+    def solve(self, operator: FilmOperator, terms: Terms) -> tuple[FilmOperator, PressureSolution]:
         """Solve for pressure and liquid fraction; see `RuptureCondition.solve`."""
-        del region
-        return _solve(operator, self.supply, squeeze=squeeze, start=start, frozen=frozen)
+        return _solve(operator, self.supply, terms)
 
     def squeezed_area(self, operator: FilmOperator, solution: PressureSolution) -> Array:
         """Return the area that oil fills [m2]: where the film is ruptured, only a part."""
@@ -151,27 +142,22 @@ class MassConserving:
 
 
 def _solve(
-    operator: FilmOperator,
-    supply: OilSupply | None,
-    *,
-    squeeze: Array | None = None,
-    start: Booleans | None = None,
-    frozen: Booleans | None = None,
+    operator: FilmOperator, supply: OilSupply | None, terms: Terms
 ) -> tuple[FilmOperator, PressureSolution]:
     """Return the pressure and liquid fraction of the operator's film.
 
     Returns FilmOperator: With the Couette flow scaled by the liquid fraction that it carries.
     Returns PressureSolution: Its `liquid` is the liquid fraction.
     """
-    film = ~operator.fixed
+    film, frozen = ~operator.fixed, terms.frozen
     if frozen is not None:
         full = frozen
-    elif start is None:
-        _, guess = Reynolds().solve(operator, squeeze=squeeze)
+    elif terms.start is None:
+        _, guess = Reynolds().solve(operator, Terms(terms.squeeze))
         full = guess.full & film
     else:
-        full = start & film
-    rate = np.zeros(film.shape) if squeeze is None else squeeze
+        full = terms.start & film
+    rate = np.zeros(film.shape) if terms.squeeze is None else terms.squeeze
     seen: set[bytes] = set()
     damped, converged, steps = False, False, 0
     fractions = np.ones(0 if supply is None else supply.flow.size)

@@ -23,7 +23,7 @@ from ...model import Bearing, Lubricant
 from ...model.restrictors import Restrictor
 from ..mesh import FilmMesh
 from ..operator import EAST, NORTH, SOUTH, WEST, FilmOperator
-from .base import Factor, PressureSolution, RuptureCondition
+from .base import Factor, PressureSolution, RuptureCondition, Terms
 from .bordered import BorderedFactor
 
 _MOST_STEPS = 60
@@ -136,29 +136,19 @@ class FedFilm:
         """See `RuptureCondition`."""
         return self.condition.conserves_oil
 
-    def solve(
-        self,
-        operator: FilmOperator,
-        *,
-        squeeze: Array | None = None,
-        start: Booleans | None = None,
-        region: NDArray[np.int64] | None = None,
-        frozen: Booleans | None = None,
-    ) -> tuple[FilmOperator, PressureSolution]:
+    def solve(self, operator: FilmOperator, terms: Terms) -> tuple[FilmOperator, PressureSolution]:
         """Solve for the film's pressure and the recesses'; see `RuptureCondition.solve`."""
         recesses = self.recesses
         swept = np.zeros(recesses.supply.size)
-        if squeeze is not None:
-            swept = np.sum(squeeze * operator.area * recesses.cells, axis=(1, 2))
+        if terms.squeeze is not None:
+            swept = np.sum(terms.squeeze * operator.area * recesses.cells, axis=(1, 2))
         pressure, steps, number = 0.5 * recesses.supply, 0, 0
         while True:
             number += 1
             fed = recesses.with_pressure(operator, pressure)
-            solved, solution = self.condition.solve(
-                fed, squeeze=squeeze, start=start, region=region, frozen=frozen
-            )
+            solved, solution = self.condition.solve(fed, terms)
             steps += solution.steps
-            start = solution.full
+            terms = replace(terms, start=solution.full)
             given, slope = recesses.given(pressure)
             lacking = given - recesses.taken(solved, solution, pressure) - swept
             free = (pressure > 0.0) | (lacking > 0.0)

@@ -17,7 +17,7 @@ from ...arrays import Array, Booleans
 from ..banded import factor_operator
 from ..kernels import kernel
 from ..operator import FilmOperator
-from .base import ConnectedFilm, PressureSolution, source_term, with_fixed
+from .base import ConnectedFilm, PressureSolution, Terms, source_term, with_fixed
 
 _MAX_ACTIVE_SET_STEPS = 400
 _COARSEST = 16
@@ -27,7 +27,7 @@ _COARSEST = 16
 class Reynolds(ConnectedFilm):
     """The film ruptures where both the pressure and its gradient vanish.
 
-    With `region` given, each line along the film keeps one full stretch per region besides those
+    Under `Terms.region` each line along the film keeps one full stretch per region besides those
     fed by a groove: a ruptured film then stays ruptured up to the next inception.
     Thermal films need it, since the derivative of F1/F0 could otherwise re-form film inside the
     ruptured sector.
@@ -35,21 +35,13 @@ class Reynolds(ConnectedFilm):
 
     conserves_oil: bool = True
 
-    def solve(
-        self,
-        operator: FilmOperator,
-        *,
-        squeeze: Array | None = None,
-        start: Booleans | None = None,
-        region: NDArray[np.int64] | None = None,
-        frozen: Booleans | None = None,
-    ) -> tuple[FilmOperator, PressureSolution]:
+    def solve(self, operator: FilmOperator, terms: Terms) -> tuple[FilmOperator, PressureSolution]:
         """Solve the complementarity problem; see `RuptureCondition.solve`."""
-        source = source_term(operator, squeeze)
+        source, region = source_term(operator, terms.squeeze), terms.region
         film = ~operator.fixed
-        if frozen is not None:
-            return operator, _on_frozen_set(operator, source, frozen)
-        guess = _coarse_guess(operator, source) if start is None else start
+        if terms.frozen is not None:
+            return operator, _on_frozen_set(operator, source, terms.frozen)
+        guess = _coarse_guess(operator, source) if terms.start is None else terms.start
         solution = _active_set(operator, source, film, guess & film)
         if region is None:
             return operator, solution

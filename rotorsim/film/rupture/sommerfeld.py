@@ -3,53 +3,33 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...arrays import Array, Booleans
 from ..banded import factor_operator
 from ..operator import FilmOperator
-from .base import ConnectedFilm, Factor, PressureSolution, source_term, with_fixed
+from .base import ConnectedFilm, Factor, PressureSolution, Terms, source_term, with_fixed
 
 
 class FullSommerfeld(ConnectedFilm):
     """No rupture: negative pressures stay."""
 
-    def solve(
-        self,
-        operator: FilmOperator,
-        *,
-        squeeze: Array | None = None,
-        start: Booleans | None = None,
-        region: NDArray[np.int64] | None = None,
-        frozen: Booleans | None = None,
-    ) -> tuple[FilmOperator, PressureSolution]:
+    def solve(self, operator: FilmOperator, terms: Terms) -> tuple[FilmOperator, PressureSolution]:
         """Solve once; see `RuptureCondition.solve`."""
-        del start, region, frozen
         film = ~operator.fixed
         factor = factor_operator(operator, film)
-        pressure = with_fixed(operator, factor.solve(source_term(operator, squeeze)))
+        pressure = with_fixed(operator, factor.solve(source_term(operator, terms.squeeze)))
         return operator, PressureSolution(pressure, pressure, film, factor, 1, True)
 
 
 class HalfSommerfeld(ConnectedFilm):
     """Negative pressures of the unruptured film are dropped."""
 
-    def solve(
-        self,
-        operator: FilmOperator,
-        *,
-        squeeze: Array | None = None,
-        start: Booleans | None = None,
-        region: NDArray[np.int64] | None = None,
-        frozen: Booleans | None = None,
-    ) -> tuple[FilmOperator, PressureSolution]:
+    def solve(self, operator: FilmOperator, terms: Terms) -> tuple[FilmOperator, PressureSolution]:
         """Solve once and keep what is positive; see `RuptureCondition.solve`."""
-        del start, region
         film = ~operator.fixed
         factor = factor_operator(operator, film)
-        raw = with_fixed(operator, factor.solve(source_term(operator, squeeze)))
+        raw = with_fixed(operator, factor.solve(source_term(operator, terms.squeeze)))
         positive = film & (raw > 0.0)
-        full = positive if frozen is None else frozen
+        full = positive if terms.frozen is None else terms.frozen
         kept = np.where(full, np.maximum(raw, 0.0), np.where(operator.fixed, raw, 0.0))
         # The line p = 0 is known to one cell along the film.
         wrong = full != positive
