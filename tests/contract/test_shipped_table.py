@@ -28,6 +28,15 @@ def test_it_is_the_shipped_scenarios(table):
     assert dict(table.dataset.sizes) == {"thermal_model": 2, "radial_clearance": 3, "speed": 30}
 
 
+def test_it_holds_the_variables_of_today(table):
+    """Or the README's first command would write it anew, and leave a changed checkout."""
+    scenario = rs.load_scenario(ROOT / "scenarios" / "quick.toml").replace(
+        speed=np.array([1500.0, 1600.0]), radial_clearance=1e-4
+    )
+    today = rs.tabulate(scenario, workers=1)
+    assert set(map(str, table.dataset.variables)) == set(map(str, today.dataset.variables))
+
+
 @pytest.mark.parametrize("model", ["isothermal", "thd"])
 def test_it_is_what_the_solver_gives(table, model):
     scenario = rs.load_scenario(ROOT / "scenarios" / "dal.toml")
