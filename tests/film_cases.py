@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from tolerances import COEFFICIENT_DIFFERENCES
 
 from rotorsim.bearing.operating_point import OperatingPoint
+from rotorsim.film.layers import isoviscous_layers
+from rotorsim.film.linearization import linearize
+from rotorsim.film.problem import FilmState, film_problem, film_state
 from rotorsim.model import (
     Arc,
     Bearing,
@@ -28,6 +33,8 @@ from rotorsim.model import (
 )
 
 DATA = Path(__file__).parent / "data"
+STEP = 1e-5
+"""Of the displacements' scales, in differences."""
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.05, 100e-6, 0.02, 100.0
 DAL_OIL = Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13)
 
@@ -121,3 +128,35 @@ def dimensionless(point: OperatingPoint) -> tuple[np.ndarray, np.ndarray]:
     """K c/W and C c omega/W."""
     scale = point.radial_clearance / point.load
     return point.stiffness * scale, point.damping * scale * point.speed
+
+
+def film_at(case: Case, position: Sequence[float], speed: float = 100.0) -> FilmState:
+    """Return the film of oil of one viscosity at `position` (2,) [m]; `speed` [rad/s]."""
+    problem = film_problem(case, speed, case.bearing, position)
+    mu = float(case.lubricant.viscosity(case.thermal.supply_temperature))
+    return film_state(problem, np.asarray(position), isoviscous_layers(problem.mesh.shape, mu))
+
+
+def assert_derivatives(state: FilmState) -> None:
+    """Compare K and C of the film with central differences of its forces, as energies."""
+    scales = state.problem.geometry.displacements.scales
+    carrying = state.solution.carrying
+
+    def force(q, velocity=None):
+        start = state.solution.full
+        moved = film_state(state.problem, q, state.layers, velocity=velocity, start=start)
+        np.testing.assert_array_equal(moved.solution.carrying, carrying)
+        return moved.force
+
+    k, c = np.empty((2, scales.size, scales.size))
+    for axis, scale in enumerate(scales):
+        step = STEP * scale * np.eye(scales.size)[axis]
+        q, rate = state.displacement, step * state.problem.speed
+        k[:, axis] = (force(q - step) - force(q + step)) / (2.0 * step[axis])
+        c[:, axis] = (force(q, -rate) - force(q, rate)) / (2.0 * rate[axis])
+    weights = np.outer(scales, scales)
+    for found, wanted in zip(linearize(state), (k, c), strict=True):
+        np.testing.assert_allclose(
+            found * weights, wanted * weights,
+            atol=COEFFICIENT_DIFFERENCES * np.abs(wanted * weights).max(), rtol=0.0,
+        )  # fmt: skip

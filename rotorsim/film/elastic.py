@@ -23,11 +23,11 @@ from ..model.compliance import Diaphragm, ElasticLayer, ThinBush
 from .banded import NoFilmError
 from .geometry import CENTER
 from .mesh import FilmMesh
+from .rupture import Factor, filled_cells, solve_any
 from .sources import displacement_sources
 
 if TYPE_CHECKING:
     from .problem import FilmState
-    from .rupture import Factor
 
 Field = NDArray[Any]
 _TOLERANCE = 1e-11
@@ -93,25 +93,30 @@ class ElasticBore:
     ) -> tuple[FilmState, float]:
         """Newton's method with a part of the compliance; what is missing over the thinnest film."""
         tolerance = _TOLERANCE if share == 1.0 else _ACCEPTED
-        for number in range(_MAX_STEPS + 1):
-            deflection = _deflection(state)
-            missing = share * self.compliance(_loaded(state)) - deflection
-            off = float(np.abs(missing).max()) / state.min_thickness
-            if off <= tolerance or number == _MAX_STEPS:
-                return state, off
+        missing, off = self._missing(state, share)
+        for _ in range(_MAX_STEPS):
+            if off <= tolerance:
+                break
             step = self._newton(state, missing, share)
             most = float((np.abs(step) / state.center_thickness).max())
             step = step * min(1.0, _LARGEST_STEP / most)
-            state = film(self.spread(deflection + step))
-        raise AssertionError  # the last step returns
+            state = film(self.spread(_deflection(state) + step))
+            missing, off = self._missing(state, share)
+        return state, off
+
+    def _missing(self, state: FilmState, share: float) -> tuple[Array, float]:
+        """Deflection that the pressure asks for beyond the state's own; over the thinnest film."""
+        missing = share * self.compliance(state.solution.pressure) - _deflection(state)
+        return missing, float(np.abs(missing).max()) / state.min_thickness
 
     def _newton(self, state: FilmState, missing: Array, share: float) -> Array:
         factor = state.solution.factor
+        answering = state.solution.carrying | filled_cells(factor)
 
         def product(flat: Array) -> Array:
             change = flat.reshape(missing.shape)
             pressure = factor.solve(displacement_sources(state, self.spread(change)[None]))[0]
-            pressure = np.where(state.solution.full, pressure, 0.0)
+            pressure = np.where(answering, pressure, 0.0)
             return (change - share * self.compliance(pressure)).ravel()
 
         return _solved(product, missing.ravel()).reshape(missing.shape)
@@ -129,21 +134,18 @@ class ElasticBore:
         pressures : Those of a bore that keeps its shape.
         weight : (n, m) array. Of all that is added to continuity.
         """
-        full = state.solution.full
+        answering = state.solution.carrying | filled_cells(factor)
 
         def added(pressure: Field) -> Field:
-            deflection = self.compliance(pressure)
-            sources = [
-                displacement_sources(state, self.spread(part)[None])[0] * unit
-                for part, unit in ((np.real(deflection), 1.0), (np.imag(deflection), 1j))
-                if np.any(part) or unit == 1.0
-            ]
-            total = sum(sources)
+            moved = self.spread(self.compliance(pressure))[None]
+            total = displacement_sources(state, np.real(moved))[0].astype(pressure.dtype)
+            if np.iscomplexobj(moved):
+                total += 1j * displacement_sources(state, np.imag(moved))[0]
             if rate:
-                total = total + rate * self.squeezing(state, pressure)
+                total = total + rate * self.squeezing(state, pressure[None])[0]
             if weight is not None:
                 total = total * weight
-            return np.where(full, _solve_any(factor, np.asarray(total)), 0.0)
+            return np.where(answering, solve_any(factor, total), 0.0)
 
         found = []
         for pressure in pressures:
@@ -159,17 +161,9 @@ class ElasticBore:
     def squeezing(self, state: FilmState, pressures: Field) -> Field:
         """What a bore that gives way at the rates of its deflection adds to continuity."""
         area = state.problem.rupture.squeezed_area(state.operator, state.solution)
-        moving = np.where(state.operator.fixed, 0.0, -area)
-        if pressures.ndim == 2:
-            return moving * self.compliance(pressures)
+        open_ = state.operator.fixed & ~filled_cells(state.solution.factor)
+        moving = np.where(open_, 0.0, -area)
         return np.stack([moving * self.compliance(one) for one in pressures])
-
-
-def _solve_any(factor: Factor, right: Field) -> Field:
-    if not np.iscomplexobj(right):
-        return factor.solve(right[None])[0]
-    parts = factor.solve(np.stack([np.real(right), np.imag(right)]))
-    return np.asarray(parts[0] + 1j * parts[1])
 
 
 def _beyond(values: Field, sizes: Array) -> Field:
@@ -181,10 +175,6 @@ def _beyond(values: Field, sizes: Array) -> Field:
 def _deflection(state: FilmState) -> Array:
     assert state.deflection is not None
     return np.asarray(state.deflection[CENTER])
-
-
-def _loaded(state: FilmState) -> Array:
-    return np.where(state.solution.full, state.solution.pressure, 0.0)
 
 
 def _solved(product: Callable[[Field], Field], right: Field) -> Field:

@@ -24,13 +24,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
-from ..arrays import Array, Booleans, ComplexArray
+from ..arrays import Array, ComplexArray
 from ..model.settings import DeformationResponse
 from .elastic import ElasticBore
 from .geometry import CENTER, Displacements, turnings
 from .operator import film_operator
 from .problem import FilmState
-from .rupture import BorderedFactor, Factor
+from .rupture import Factor, filled_cells, solve_any
 from .sources import displacement_sources
 from .thd import ThermalFilm, solve_thermal_film
 
@@ -58,12 +58,8 @@ class _Motions:
         state, shapes = self.state, self.displacements.shapes
         squeezed = state.problem.rupture.squeezed_area(state.operator, state.solution)
         squeezing = -shapes[:, CENTER] * squeezed
-        squeezing[:, state.operator.fixed & ~_filled(state.solution.factor)] = 0.0
+        squeezing[:, state.operator.fixed & ~filled_cells(state.solution.factor)] = 0.0
         return np.concatenate([displacement_sources(state, shapes), squeezing])
-
-    def reaction(self, right: Array, factor: Factor | None = None) -> NDArray[Any]:
-        """Return -dQ_i/dq_j = -int p_j s_i dA for each right-hand side j, (q, sources)."""
-        return self.forces(self.pressures(right, factor or self.factor))
 
     def pressures(
         self, right: NDArray[Any], factor: Factor, rate: complex = 0.0, weight: Any = None
@@ -72,10 +68,8 @@ class _Motions:
 
         weight : See `RuptureCondition.dynamic_factor`.
         """
-        solved = factor.solve(np.real(right))
-        if np.iscomplexobj(right):
-            solved = solved + 1j * factor.solve(np.imag(right))
-        solved = np.where(self.state.solution.carrying | _filled(factor), solved, 0.0)
+        solved = solve_any(factor, right)
+        solved = np.where(self.state.solution.carrying | filled_cells(factor), solved, 0.0)
         if self.elastic is None:
             return solved
         return self.elastic.followed(self.state, factor, solved, rate, weight)
@@ -96,11 +90,6 @@ class _Motions:
         if self.elastic is not None:
             moving = moving + self.elastic.squeezing(self.state, pressures)
         return stiffness, self.forces(self.pressures(moving, self.factor))
-
-
-def _filled(factor: Factor) -> Booleans:
-    """Return the cells of recesses whose pressure the factor solves for, (n, m) or ()."""
-    return factor.filled if isinstance(factor, BorderedFactor) else np.zeros((), dtype=bool)
 
 
 def _film_motions(
@@ -163,25 +152,17 @@ class DynamicStiffness:
         blocks = []
         for motions, sources in zip(self._motions, self._sources, strict=True):
             factor, weight = self._rupture.dynamic_factor(motions.factor, s * self._volume)
-            if motions.elastic is not None:
-                still, moving = np.split(sources if weight is None else sources * weight, 2)
-                pressures = motions.pressures(still + s * moving, factor, s, weight)
-                blocks.append(motions.forces(pressures))
-                continue
-            if weight is None:
-                reaction = motions.reaction(sources, factor)
-            else:
-                reaction = motions.reaction(sources * np.real(weight), factor)
-                reaction = reaction + 1j * motions.reaction(sources * np.imag(weight), factor)
-            moved, moving = np.split(reaction, 2, axis=1)
-            blocks.append(moved + s * moving)
+            still, moving = np.split(sources if weight is None else sources * weight, 2)
+            pressures = motions.pressures(still + s * moving, factor, s, weight)
+            blocks.append(motions.forces(pressures))
         return np.asarray(block_diag(*blocks))
 
 
 def stiffness_matrix(state: FilmState) -> Array:
     """Return K alone [N/m], (q, q): the Jacobian of the forces with its sign turned."""
     (motions,) = _film_motions(state)
-    return motions.reaction(displacement_sources(state, motions.displacements.shapes))
+    sources = displacement_sources(state, motions.displacements.shapes)
+    return motions.forces(motions.pressures(sources, motions.factor))
 
 
 def following_stiffness(film: ThermalFilm) -> tuple[Array, bool]:

@@ -7,14 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from film_cases import CLEARANCE, RADIUS, VISCOSITY, isothermal_case, thermal_case
+from film_cases import (
+    CLEARANCE,
+    RADIUS,
+    VISCOSITY,
+    assert_derivatives,
+    film_at,
+    isothermal_case,
+    thermal_case,
+)
 from scipy.optimize import brentq
-from tolerances import COEFFICIENT_DIFFERENCES, HEAT_BALANCE
+from tolerances import HEAT_BALANCE
 
 from rotorsim.errors import InputError
-from rotorsim.film.layers import isoviscous_layers
 from rotorsim.film.linearization import DynamicStiffness, linearize
-from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
 from rotorsim.model import Bearing, Groove, LoadTarget
 from rotorsim.model.restrictors import Capillary, Orifice, Pump
@@ -39,13 +45,6 @@ def recess(center, restrictor, extent=60.0, length=0.06):
 
 def four(restrictor):
     return tuple(recess(angle, restrictor) for angle in (0.0, 90.0, 180.0, 270.0))
-
-
-def state_at(case, position, speed=100.0, velocity=None):
-    problem = film_problem(case, speed, case.bearing, position)
-    mu = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    layers = isoviscous_layers(problem.mesh.shape, mu)
-    return film_state(problem, position, layers, velocity=velocity)
 
 
 def recess_pressures(state):
@@ -82,7 +81,7 @@ def test_recesses_with_thin_lands(kind, eccentricity):
     grooves = (*recesses, *drains)
     case = isothermal_case(mesh=(96, 24), grooves=grooves, inception="free")
     position = (eccentricity * CLEARANCE, 0.0)
-    state = state_at(case, position, speed=1e-6)
+    state = film_at(case, position, speed=1e-6)
 
     def wanted(at):
         return [thin_land_pad(restrictor, deg(a), at) for a in (0.0, 90.0, 180.0, 270.0)]
@@ -108,25 +107,10 @@ def test_coefficients_are_the_derivatives_of_the_force(kind, cavitation, slopes)
         LoadTarget(2000.0), mesh=(48, 16), cavitation=cavitation, grooves=four(RESTRICTORS[kind]),
         misalignment=slopes,
     )  # fmt: skip
-    state = state_at(case, (4.2e-5, 3e-5), 300.0)
-    problem, position = state.problem, state.displacement
+    state = film_at(case, (4.2e-5, 3e-5), 300.0)
     assert state.solution.converged
-    stiffness, damping = linearize(state)
-
-    def force(q, velocity=None):
-        start = state.solution.full
-        return film_state(problem, q, state.layers, velocity=velocity, start=start).force
-
-    k, c = np.empty((2, 2)), np.empty((2, 2))
-    for axis in range(2):
-        step = 1e-5 * CLEARANCE * np.eye(2)[axis]
-        k[:, axis] = (force(position - step) - force(position + step)) / (2.0 * step[axis])
-        rate = step * problem.speed
-        c[:, axis] = (force(position, -rate) - force(position, rate)) / (2.0 * rate[axis])
-    for found, wanted in ((stiffness, k), (damping, c)):
-        np.testing.assert_allclose(
-            found, wanted, atol=COEFFICIENT_DIFFERENCES * np.abs(wanted).max(), rtol=0.0
-        )
+    assert_derivatives(state)
+    stiffness, _ = linearize(state)
     low = DynamicStiffness(state)(1e-6j)
     np.testing.assert_allclose(low.real, stiffness, atol=1e-5 * np.abs(stiffness).max())
 
@@ -148,7 +132,7 @@ def test_a_recess_gives_what_its_restrictor_lets_through(kind, cavitation):
 
 def test_a_recess_that_cannot_be_filled_stands_at_ambient_pressure():
     case = isothermal_case(mesh=(48, 16), grooves=four(Capillary(2e-4, 0.1)))
-    state = state_at(case, (5e-5, 0.0), 2000.0)
+    state = film_at(case, (5e-5, 0.0), 2000.0)
     pressures = recess_pressures(state)
     assert state.solution.converged
     assert pressures.min() == 0.0
@@ -167,9 +151,9 @@ def test_heat_of_a_hybrid_bearing(cavitation):
 
 def test_symmetric_recesses_on_half_a_film_equal_those_on_the_whole():
     case = isothermal_case(LoadTarget(3000.0), mesh=(48, 24), grooves=four(Orifice(1e-3)))
-    half = state_at(case, (4e-5, 3e-5), 300.0)
+    half = film_at(case, (4e-5, 3e-5), 300.0)
     tilted = replace(case, bearing=replace(case.bearing, misalignment=(1e-12, 0.0)))
-    whole = state_at(tilted, (4e-5, 3e-5), 300.0)
+    whole = film_at(tilted, (4e-5, 3e-5), 300.0)
     assert half.problem.mesh.half
     assert not whole.problem.mesh.half
     np.testing.assert_allclose(half.force, whole.force, rtol=1e-7)

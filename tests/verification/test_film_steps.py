@@ -8,19 +8,23 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from film_cases import CLEARANCE, DAL_OIL, RADIUS, isothermal_case, split_grooves, thermal_case
-from tolerances import COEFFICIENT_DIFFERENCES, HEAT_BALANCE, ROUNDING
+from film_cases import (
+    CLEARANCE,
+    DAL_OIL,
+    RADIUS,
+    assert_derivatives,
+    film_at,
+    isothermal_case,
+    split_grooves,
+    thermal_case,
+)
+from tolerances import HEAT_BALANCE, ROUNDING
 
 from rotorsim.errors import InputError
 from rotorsim.film.flow import film_flow
-from rotorsim.film.layers import isoviscous_layers
-from rotorsim.film.linearization import linearize
 from rotorsim.film.losses import friction_force
-from rotorsim.film.problem import film_problem, film_state
 from rotorsim.film.solution import solve_film
 from rotorsim.model import Bearing, Groove, LoadTarget, Pocket
-
-STEP = 1e-5
 
 
 def deg(angle: float) -> float:
@@ -41,12 +45,6 @@ BORES = {
 def with_pockets(case, *pockets, **film):
     bearing = replace(case.bearing, pockets=pockets)
     return replace(case, bearing=bearing, film=replace(case.film, **film))
-
-
-def film_at(case, position, speed=100.0):
-    problem = film_problem(case, speed, case.bearing, position)
-    mu = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    return film_state(problem, position, isoviscous_layers(problem.mesh.shape, mu))
 
 
 @pytest.mark.parametrize("cells", [16, 37, 90])
@@ -99,23 +97,7 @@ def test_coefficients_are_the_derivatives_of_the_force(bore, cavitation, flow):
         viscosity=0.02 if flow == "laminar" else 0.004,
     )  # fmt: skip
     state = film_at(with_pockets(case, *BORES[bore], flow=flow), (4e-5, 3e-5), 500.0)
-    problem, position = state.problem, state.displacement
-    stiffness, damping = linearize(state)
-
-    def force(q, velocity=None):
-        start = state.solution.full
-        return film_state(problem, q, state.layers, velocity=velocity, start=start).force
-
-    k, c = np.empty((2, 2)), np.empty((2, 2))
-    for axis in range(2):
-        step = STEP * CLEARANCE * np.eye(2)[axis]
-        k[:, axis] = (force(position - step) - force(position + step)) / (2.0 * step[axis])
-        rate = step * problem.speed
-        c[:, axis] = (force(position, -rate) - force(position, rate)) / (2.0 * rate[axis])
-    for found, wanted in ((stiffness, k), (damping, c)):
-        np.testing.assert_allclose(
-            found, wanted, atol=COEFFICIENT_DIFFERENCES * np.abs(wanted).max(), rtol=0.0
-        )
+    assert_derivatives(state)
 
 
 @pytest.mark.slow

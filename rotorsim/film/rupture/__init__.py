@@ -7,8 +7,8 @@ object.
 from __future__ import annotations
 
 from ...model import Cavitation
-from .base import Factor, PressureSolution, RuptureCondition, Terms
-from .bordered import BorderedFactor
+from .base import Factor, PressureSolution, RuptureCondition, Terms, solve_any
+from .bordered import BorderedFactor, filled_cells
 from .mass_conserving import MassConserving
 from .recesses import FedFilm, Recesses
 from .reynolds import Reynolds
@@ -32,5 +32,5 @@ def rupture_condition(name: Cavitation, supply: OilSupply | None = None) -> Rupt
 
 __all__ = [
     "BorderedFactor", "Factor", "FedFilm", "OilSupply", "PressureSolution", "Recesses",
-    "RuptureCondition", "Terms", "rupture_condition",
+    "RuptureCondition", "Terms", "filled_cells", "rupture_condition", "solve_any",
 ]  # fmt: skip

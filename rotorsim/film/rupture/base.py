@@ -71,6 +71,13 @@ class Terms:
     frozen: Booleans | None = None
 
 
+def solve_any(factor: Factor, right: NDArray[Any]) -> NDArray[Any]:
+    """Solve for real or complex right-hand sides (..., n, m) [m3/s]."""
+    if not np.iscomplexobj(right):
+        return factor.solve(right)
+    return np.asarray(factor.solve(np.real(right)) + 1j * factor.solve(np.imag(right)))
+
+
 class RuptureCondition(Protocol):
     """What the film does where it would pull."""
 

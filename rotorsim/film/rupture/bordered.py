@@ -81,3 +81,8 @@ class BorderedFactor:
             held = np.tensordot(unknown, self.cells.astype(float), axes=1)
             solved = np.where(self.cells.any(axis=0), held, solved)
         return solved, unknown
+
+
+def filled_cells(factor: Factor) -> Booleans:
+    """Return the cells of recesses whose pressure the factor solves for, (n, m) or ()."""
+    return factor.filled if isinstance(factor, BorderedFactor) else np.zeros((), dtype=bool)
