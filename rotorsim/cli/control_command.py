@@ -115,6 +115,7 @@ def control(
             raise InputError("goes with a machine: here it acts on the journal", key=key)
     design = design or _DesignChoice.LQR
     from ..files.scenario import load_scenario
+    from ..model import preferred_model
     from ..model.orbit import ActuatorSettings, Design
     from ..study.control import study_control
 
@@ -127,10 +128,9 @@ def control(
     carried = positive(mass, "mass", "--mass", "1200 kg") or own
     if carried is None:
         raise InputError('is missing: a rigid rotor, e.g. "900 kg"', key="--mass")
-    names = [str(name) for name in loaded.thermal_models]
     case = loaded.case(
         None if clearance is None else wanted_clearance(loaded, clearance),
-        model or ("thd" if "thd" in names else names[0]),
+        model or preferred_model(loaded.thermal_models),
     )
     study = study_control(case, at, carried, settings, disturbance=start, revolutions=revolutions)
     document = _study_document(study)

@@ -34,6 +34,7 @@ from .settings import (
     ThermalModel,
     ThermalSettings,
     ViscosityResponse,
+    preferred_model,
 )
 
 __all__ = [
@@ -74,4 +75,5 @@ __all__ = [
     "ViscosityResponse",
     "WaltherViscosity",
     "pad_inertia",
+    "preferred_model",
 ]

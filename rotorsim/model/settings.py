@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from itertools import pairwise
@@ -104,6 +105,12 @@ class ThermalModel(StrEnum):
 
     ISOTHERMAL = "isothermal"
     THD = "thd"
+
+
+def preferred_model(models: Iterable[str]) -> str:
+    """Return ``thd`` where it is among the models, or the first of them."""
+    names = [str(model) for model in models]
+    return "thd" if "thd" in names else names[0]
 
 
 class InletModel(StrEnum):

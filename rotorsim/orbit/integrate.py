@@ -7,8 +7,7 @@ The equations, the compiled integrator and SciPy's are those of any machine
 from __future__ import annotations
 
 import math
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +20,7 @@ from .analysis import recognise
 from .film_force import SolvedFilmForce
 from .forces import ActuatedFilm, CompilableForce, LinearForce, find_equilibrium
 from .kernels import film_force_series
-from .motion import CHUNK_REVOLUTIONS, Motion, MotionProblem, pieces_of
+from .motion import CHUNK_REVOLUTIONS, Motion, MotionProblem, last_pieces, pieces_of
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import OrbitProblem
 from .system import Harmonic, Link, MotionSystem, translation_columns
@@ -43,24 +42,21 @@ def simulate(
     Raises InputError: Start outside the clearance, speeds outside the coefficients' range, or a
         static load that no position carries.
     """
-    pieces: deque[Orbit] = deque()
-    dropped: OrbitEvent | None = None
-    least = math.inf
-    for piece in _simulate_pieces(problem):
-        if consume is not None:
-            consume(piece)
-        pieces.append(piece)
-        if keep_revolutions is None:
-            continue
-        while len(pieces) > 1 and _turns(pieces) - _turns([pieces[0]]) >= keep_revolutions:
-            old = pieces.popleft()
-            if old.t.size and old.min_film.min() < least:
-                at = int(np.argmin(old.min_film))
-                least = float(old.min_film[at])
-                dropped = _event("minimum_film", old, at)
+    least: list[OrbitEvent] = []
+    smallest = math.inf
+
+    def drop(old: Orbit) -> None:
+        nonlocal smallest
+        if old.t.size and old.min_film.min() < smallest:
+            at = int(np.argmin(old.min_film))
+            smallest = float(old.min_film[at])
+            least[:] = [_event("minimum_film", old, at)]
+
+    pieces = last_pieces(
+        _simulate_pieces(problem), problem.samples_per_revolution, consume, keep_revolutions, drop
+    )
     orbit = concatenate(pieces)
-    if dropped is not None:
-        orbit = replace(orbit, events=(dropped, *orbit.events))
+    orbit = replace(orbit, events=(*least, *orbit.events))
     if orbit.status is not OrbitStatus.COMPLETED or not problem.schedule.is_constant:
         return replace(orbit, message="; ".join(filter(None, (orbit.message, orbit.note))))
     found = recognise(orbit)
@@ -74,11 +70,6 @@ def simulate(
 
 def _event(name: str, orbit: Orbit, at: int) -> OrbitEvent:
     return OrbitEvent(name, float(orbit.t[at]), float(orbit.x[at]), float(orbit.y[at]))
-
-
-def _turns(pieces: Iterable[Orbit]) -> float:
-    """Return the revolutions that the pieces hold together."""
-    return sum(p.t.size / p.samples_per_revolution for p in pieces)
 
 
 def _simulate_pieces(

@@ -6,9 +6,10 @@ import itertools
 import math
 import warnings
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 
@@ -318,21 +319,42 @@ def simulate_motion(
 
     Returns: With ``status``: never an exception for what happens in the run.
     """
-    pieces: deque[Motion] = deque()
-    turns = 0.0
-    for piece in pieces_of(problem):
-        if consume is not None:
-            consume(piece)
-        pieces.append(piece)
-        turns += piece.t.size / problem.samples_per_revolution
-        while keep_revolutions is not None and len(pieces) > 1:
-            first = pieces[0].t.size / problem.samples_per_revolution
-            if turns - first < keep_revolutions:
-                break
-            pieces.popleft()
-            turns -= first
+    pieces = last_pieces(
+        pieces_of(problem), problem.samples_per_revolution, consume, keep_revolutions
+    )
     joined = {name: np.concatenate([getattr(one, name) for one in pieces]) for name in _SERIES}
     return replace(pieces[-1], **joined)
+
+
+_Piece = TypeVar("_Piece", Orbit, "Motion")
+
+
+def last_pieces(
+    pieces: Iterable[_Piece],
+    samples_per_revolution: int,
+    consume: Callable[[_Piece], None] | None,
+    keep_revolutions: int | None,
+    drop: Callable[[_Piece], None] | None = None,
+) -> list[_Piece]:
+    """Return the pieces that hold the last `keep_revolutions` (None: all).
+
+    consume, drop : Called with each piece as it comes, and as it is left out.
+    """
+    kept: deque[_Piece] = deque()
+    samples = 0
+    for piece in pieces:
+        if consume is not None:
+            consume(piece)
+        kept.append(piece)
+        samples += piece.t.size
+        while keep_revolutions is not None and len(kept) > 1:
+            if samples - kept[0].t.size < keep_revolutions * samples_per_revolution:
+                break
+            old = kept.popleft()
+            samples -= old.t.size
+            if drop is not None:
+                drop(old)
+    return list(kept)
 
 
 def pieces_of(problem: MotionProblem, revolutions: int = CHUNK_REVOLUTIONS) -> Iterator[Motion]:

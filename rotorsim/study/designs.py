@@ -15,7 +15,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,7 +27,7 @@ from ..atomic import write_text
 from ..errors import InputError, RotorsimError
 from ..file_kinds import is_missing
 from ..files.scenario.scenario import entry_kind
-from ..model import ThermalModel
+from ..model import ThermalModel, preferred_model
 from ..model.entries import choice
 from ..units import QUANTITIES, parse_quantity
 from .stability import stability_curves
@@ -93,12 +94,12 @@ class Study:
     solved: int
     points: int
 
-    @property
+    @cached_property
     def converged(self) -> pd.DataFrame:
         """Designs all of whose points converged."""
         return self.designs.loc[self.designs["status"] == "converged"]
 
-    @property
+    @cached_property
     def front(self) -> pd.DataFrame:
         """Designs that no other beats in threshold speed, power loss and temperature at once."""
         found = self.converged
@@ -148,8 +149,7 @@ def run_study(
             '["80 um", "120 um"] }',
             key="study",
         )
-    models = [str(model) for model in scenario.thermal_models]
-    model = choice(ThermalModel, thermal_model or ("thd" if "thd" in models else models[0]))
+    model = choice(ThermalModel, thermal_model or preferred_model(scenario.thermal_models))
     base = scenario.replace(**_OTHERWISE, thermal_model=str(model))
     variables = tuple(_variable(base, one) for one in settings.vary)
     design = _Design(base.text, scenario.source, tuple(v.name for v in variables), model_digest())
@@ -334,7 +334,7 @@ def described(study: Study) -> dict[str, Any]:
         "title": study.title,
         "thermal_model": study.thermal_model,
         "speeds": study.speeds,
-        "variables": [replace(one).__dict__ for one in study.variables],
+        "variables": [asdict(one) for one in study.variables],
         "samples": len(study.designs),
         "status": {str(name): int(count) for name, count in counts.items()},
         "solved_now": study.solved,

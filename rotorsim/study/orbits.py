@@ -12,6 +12,7 @@ from ..arguments import refuse_path
 from ..arrays import Array, Indices
 from ..bearing.operating_point import OperatingPoint
 from ..errors import InputError
+from ..model import preferred_model
 from ..model.orbit import OrbitForce, SpeedRamp
 from .control import with_actuator
 
@@ -124,14 +125,14 @@ def _orbit_problem(
             raise InputError(
                 'needs a coefficient table: force is "linear"', source=scenario.source, key="orbit"
             )
-        model = thermal_model or _preferred_model(table)
+        model = thermal_model or preferred_model(table.dataset["thermal_model"].values)
         force, bearing = _linear_force(scenario, table, model)
         # the coefficients hold about the loaded position, so that the load itself is left out
         load, carried = 0.0, _carried_load(table, model, settings, schedule.speeds[0])
         placed = _has_positions(table)
         note = "" if placed else _UNPLACED
     else:
-        model = thermal_model or _preferred_scenario_model(scenario)
+        model = thermal_model or preferred_model(scenario.thermal_models)
         film, placed = _nonlinear_film(scenario, model, schedule.speeds), True
         force, bearing, load, note = film.force, film.bearing, film.load, film.note
         carried = load
@@ -232,18 +233,6 @@ def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> Spee
     if settings.speed <= lowest:
         return scenario_schedule(settings)
     return SpeedSchedule.ramp(lowest, settings.speed, _RUN_UP_SECONDS, _HOLD_SECONDS)
-
-
-def _preferred_scenario_model(scenario: Scenario) -> str:
-    """``thd`` where the scenario has it, or its first thermal model."""
-    models = [model.value for model in scenario.thermal_models]
-    return "thd" if "thd" in models else models[0]
-
-
-def _preferred_model(table: CoefficientTable) -> str:
-    """``thd`` where the table has it, or its first thermal model."""
-    models = [str(name) for name in table.dataset["thermal_model"].values]
-    return "thd" if "thd" in models else models[0]
 
 
 def curve_of(table: CoefficientTable, model: str, clearance: float) -> CoefficientTable:

@@ -21,7 +21,7 @@ from ..machine.modes import machine_spectrum
 from ..machine.support import ConstantSupport, MatrixTable, Support, TableSupport
 from ..machine.thresholds import ThresholdSpeed, find_thresholds
 from ..machine.uncertainty import Propagation, SampleError, Tolerance, propagate
-from ..model import Case, LoadTarget, MeshSize
+from ..model import Case, LoadTarget, MeshSize, preferred_model
 from ..model.machine import MachineTolerances
 from ..model.tolerances import NORMAL_REACH, Spread, ToleranceSettings
 from ..rotor import Rotor
@@ -304,8 +304,7 @@ def study_tolerances(
         rotor = rotor or scenario.rotor
         if rotor is None:
             raise InputError("is missing: thresholds need a rotor", key="rotor")
-        models = [str(model) for model in scenario.thermal_models]
-        model = thermal_model or ("thd" if "thd" in models else models[0])
+        model = thermal_model or preferred_model(scenario.thermal_models)
         case = scenario.case(radial_clearance, model)
         clearance = case.bearing.radial_clearance
         speed = operating_speed or _operating_speed(scenario)
