@@ -103,7 +103,7 @@ def _tell_once() -> None:
 
 
 def _fingerprint(function: Callable[..., Any]) -> str:
-    """SHA-256 of everything of this package that is compiled into a function.
+    """Return SHA-256 of everything of this package that is compiled into a function.
 
     Examples
     --------
@@ -121,7 +121,7 @@ def _fingerprint(function: Callable[..., Any]) -> str:
 
 
 def _parts(function: Any, seen: set[int]) -> Iterator[bytes]:
-    """Byte code, options and constants of a function and of the functions that it calls."""
+    """Return byte code, options and constants of a function and of the functions that it calls."""
     yield from _value(getattr(function, "targetoptions", None), seen)
     function = getattr(function, "py_func", function)
     if not isinstance(function, FunctionType) or id(function) in seen:
@@ -146,7 +146,10 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def _value(value: Any, seen: set[int]) -> Iterator[bytes]:
-    """What a constant or a global name stands for, as far as it is compiled into a function."""
+    """Return what a constant or a global name stands for.
+
+    As far as it is compiled into a function.
+    """
     if isinstance(value, np.ndarray):
         yield f"{value.dtype}{value.shape}".encode() + value.tobytes()
     elif isinstance(value, _PLAIN):

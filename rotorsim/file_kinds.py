@@ -110,7 +110,10 @@ _COEFFICIENT = re.compile(rb"^[ \t]*kxx[ \t]*=", re.M)
 
 
 def is_missing(path: str | Path) -> bool:
-    """Whether there is nothing of that name; False where that cannot be told (permissions)."""
+    """Return whether there is nothing of that name.
+
+    False where that cannot be told (permissions).
+    """
     try:
         os.lstat(path)
     except (FileNotFoundError, NotADirectoryError):
@@ -156,7 +159,10 @@ def read_bytes(path: str | Path, most: int, error: type[InputError] = InputError
 
 
 def kind_of(path: str | Path) -> FileKind | None:
-    """Kind of the file at `path`: by its contents, else by its name; None where neither tells."""
+    """Return kind of the file at `path`: by its contents, else by its name.
+
+    None where neither tells.
+    """
     try:
         if not os.path.isfile(path):  # opening a pipe would wait for who writes to it
             return None
@@ -168,7 +174,7 @@ def kind_of(path: str | Path) -> FileKind | None:
 
 
 def recognise(head: bytes, suffix: str = "") -> FileKind | None:
-    """Kind of a file that begins with `head` and whose name ends in `suffix`.
+    """Return the kind of a file that begins with `head` and whose name ends in `suffix`.
 
     Examples
     --------

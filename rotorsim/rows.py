@@ -20,7 +20,9 @@ ZERO_CELSIUS = 273.15
 
 
 def number(value: float | None, digits: int = 4) -> str:
-    """Short text of a number, below a million without an exponent; a dash where there is none.
+    """Return short text of a number, below a million without an exponent.
+
+    A dash where there is none.
 
     Examples
     --------
@@ -71,28 +73,34 @@ def units_shown() -> str:
 
 
 def shown_unit(unit: str) -> tuple[str, float, float]:
-    """Unit that a value in `unit` is shown in, the factor and the offset that lead to it."""
+    """Return unit that a value in `unit` is shown in, the factor and the offset that lead to it."""
     return _US.get(unit, (unit, 1.0, 0.0)) if _shown_in[0] == "us" else (unit, 1.0, 0.0)
 
 
 def axis_title(label: str, unit: str) -> str:
-    """Title of a figure's axis: ``pressure [psi]`` where the unit given is MPa and US is shown."""
+    """Return title of a figure's axis.
+
+    ``pressure [psi]`` where the unit given is MPa and US is shown.
+    """
     return f"{label} [{shown_unit(unit)[0]}]"
 
 
 def in_shown_unit(value: Any, unit: str) -> Any:
-    """Values (a number or an array) in `unit`, in the unit that is shown in its place."""
+    """Return values (a number or an array) in `unit`, in the unit that is shown in its place."""
     _, factor, zero = shown_unit(unit)
     return value * factor + zero
 
 
 def shown(value: float | None, unit: str, digits: int = 4) -> str:
-    """Short text of a value in `unit`, in the unit that is shown in its place; see `heads`."""
+    """Return short text of a value in `unit`, in the unit that is shown in its place.
+
+    See `heads`.
+    """
     return number(None if value is None else in_shown_unit(value, unit), digits)
 
 
 def heads(*texts: str) -> tuple[str, ...]:
-    """Heads of columns that end in a unit, with the unit that is shown in its place.
+    """Return heads of columns that end in a unit, with the unit that is shown in its place.
 
     Examples
     --------
@@ -108,7 +116,7 @@ def heads(*texts: str) -> tuple[str, ...]:
 
 
 def with_unit(value: float, unit: str, digits: int = 4) -> str:
-    """Short text of a value in `unit`, written in the unit that is shown in its place."""
+    """Return short text of a value in `unit`, written in the unit that is shown in its place."""
     return f"{number(in_shown_unit(value, unit), digits)} {shown_unit(unit)[0]}"
 
 
@@ -229,7 +237,9 @@ QUANTITIES = {
 
 
 def quantity(name: str) -> Quantity:
-    """How a quantity is shown, by its name; of a machine's parameter ``left.load`` with its owner.
+    """Return how a quantity is shown, by its name.
+
+    Of a machine's parameter ``left.load`` with its owner.
 
     Examples
     --------
@@ -255,7 +265,7 @@ class Row(NamedTuple):
 
 
 def facts_html(rows: Iterable[Row]) -> str:
-    """HTML table of two columns: what, and its value with the unit."""
+    """Return the HTML table of two columns: what, and its value with the unit."""
     body = "\n".join(
         f'<tr><th scope="row">{escape(row.label)}</th><td>{escape(row.with_unit)}</td></tr>'
         for row in rows
@@ -270,7 +280,7 @@ _VERDICT_CLASSES = {"stable": "good", "unstable": "bad", "converged": "good"}
 def table_html(
     head: Sequence[str], rows: Iterable[Sequence[str]], caption: str = "", *, texts: int = 1
 ) -> str:
-    """HTML table; the first `texts` columns are set to the left, the others as numbers."""
+    """Return the HTML table; the first `texts` columns are texts, the others numbers."""
     columns = "".join(
         f'<th scope="col"{"" if place < texts else " class=number"}>{escape(name)}</th>'
         for place, name in enumerate(head)
@@ -290,7 +300,7 @@ def _cells(row: Sequence[str], texts: int) -> str:
 
 
 def result_html(title: str, *parts: str, notes: Iterable[str] = ()) -> str:
-    """Fragment of HTML for notebooks: a title, tables, and notes."""
+    """Return the fragment of HTML for notebooks: a title, tables, and notes."""
     said = "".join(f"<p>{escape(note)}</p>" for note in notes if note)
     inside = "\n".join(part for part in parts if part)
     return f"<div><strong>{escape(title)}</strong>\n{inside}\n{said}</div>"

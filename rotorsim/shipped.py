@@ -10,7 +10,7 @@ _TABLES = ("dal",)
 
 
 def shipped_scenarios() -> dict[str, Path]:
-    """Files of the shipped scenarios by name.
+    """Return files of the shipped scenarios by name.
 
     Examples
     --------
@@ -21,7 +21,9 @@ def shipped_scenarios() -> dict[str, Path]:
 
 
 def shipped_machines() -> dict[str, Path]:
-    """Files of the shipped machines by name; those of their bearings lie in a folder beside them.
+    """Return files of the shipped machines by name.
+
+    Those of their bearings lie in a folder beside them.
 
     Examples
     --------
@@ -33,7 +35,7 @@ def shipped_machines() -> dict[str, Path]:
 
 
 def shipped_tables() -> dict[str, Path]:
-    """Files of the shipped coefficient tables by name.
+    """Return files of the shipped coefficient tables by name.
 
     Examples
     --------
@@ -45,7 +47,7 @@ def shipped_tables() -> dict[str, Path]:
 
 
 def shipped_file(name: str) -> Path | None:
-    """File behind a name as it is typed.
+    """Return the file behind a name as it is typed.
 
     ``dal`` is a scenario, ``dal.nc`` a table, ``machines/compressor`` a machine.
     """

@@ -23,7 +23,7 @@ def _controller() -> ThreadpoolController:
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
-    """Context in which the BLAS is held to one thread."""
+    """Return the context in which the BLAS is held to one thread."""
     return _controller().limit(limits=1, user_api="blas")
 
 

@@ -171,7 +171,7 @@ class _Refusal(Exception):
 
 
 def _one(kind: _Kind) -> str:
-    """Kind with its article: a length, an angle."""
+    """Return the kind with its article: a length, an angle."""
     return f"{'an' if kind.name[0] in 'aeiou' else 'a'} {kind.name}"
 
 
@@ -211,7 +211,7 @@ def _parse(text: object, kind: _Kind) -> float:
 
 @lru_cache(maxsize=512)
 def _conversion(text: str, kind: _Kind) -> tuple[float, float]:
-    """``(offset, factor)``: SI value = offset + factor * number."""
+    """Return ``(offset, factor)``: SI value = offset + factor * number."""
     refusals: list[_Refusal] = []
     found: list[tuple[float, float]] = []
     for reading in readings(text, kind.name):
@@ -228,7 +228,7 @@ def _conversion(text: str, kind: _Kind) -> tuple[float, float]:
 
 
 def _converted(reading: str, text: str, kind: _Kind) -> tuple[float, float]:
-    """Conversion of one `reading` of the unit written as `text`."""
+    """Return the conversion of one `reading` of the unit written as `text`."""
     registry = _registry()
     try:
         unit = registry.parse_units(_checked_unit_text(reading, text), as_delta=True)
@@ -341,7 +341,7 @@ def _pint_error() -> type[Exception]:
 
 @cache
 def _registry() -> pint.UnitRegistry:
-    """Pint's registry, built when first needed (it takes a tenth of a second)."""
+    """Return pint's registry, built when first needed (it takes a tenth of a second)."""
     import pint
 
     return pint.UnitRegistry()

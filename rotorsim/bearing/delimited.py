@@ -180,7 +180,10 @@ def _lines(
 
 
 def _separator(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> str:
-    """Separator of the first line that it cuts into the columns of a table; else the comma."""
+    """Return separator of the first line that it cuts into the columns of a table.
+
+    Else the comma.
+    """
     for line in lines[:_TITLE_LINES]:
         if line.strip() and not line.lstrip().startswith("#"):
             for separator in _SEPARATORS:
@@ -202,7 +205,7 @@ def _from_header(lines: list[_Line]) -> list[_Line]:
 
 
 def named(cell: str, other_names: Mapping[str, str] = _OTHER_NAMES) -> tuple[str, str]:
-    """Name as this program calls it, and unit, of a header's cell."""
+    """Return the name as this program calls it, and unit, of a header's cell."""
     match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_NAME else None
     if match is None:
         return cell.strip()[:_LONGEST_NAME], ""
@@ -265,7 +268,7 @@ def _columns(
 
 
 def _factor(name: str, unit: str, cell: str, source: Path) -> float:
-    """Return SI value over the number in the file."""
+    """Return the SI value over the number in the file."""
     kind = _KINDS[name]
     try:
         return parse_unit(unit, kind)[1]
@@ -279,7 +282,9 @@ def _factor(name: str, unit: str, cell: str, source: Path) -> float:
 
 
 def _decimal_comma(rows: list[_Line], columns: list[_Column], source: Path) -> bool:
-    """Whether decimals are written with a comma, in a file whose columns something else separates.
+    """Return whether decimals are written with a comma.
+
+    In a file whose columns something else separates.
 
     Raises TableError: Commas stand only where thousands might be parted, or numbers have points as
         well.

@@ -59,14 +59,19 @@ def point_title(point: OperatingPoint) -> str:
 
 
 def curve_title(thermal_model: str, radial_clearance: float, *more: str) -> str:
-    """``thd, c = 100 µm``, and what else is said of a curve; an unknown clearance is left out."""
+    """Return ``thd, c = 100 µm``, and what else is said of a curve.
+
+    An unknown clearance is left out.
+    """
     known = math.isfinite(radial_clearance)
     clearance = [QUANTITIES["radial_clearance"].said(radial_clearance)] if known else []
     return ", ".join([thermal_model, *clearance, *more])
 
 
 def grouped_warnings(points: Sequence[OperatingPoint]) -> list[str]:
-    """One line for each kind of warning: its last wording, and at how many points from where on.
+    """Return one line for each kind of warning.
+
+    Its last wording, and at how many points from where on.
 
     Warnings that differ in their numbers alone are of one kind.
     """
@@ -90,7 +95,10 @@ def point_status(point: OperatingPoint) -> str:
 
 
 def point_text(point: OperatingPoint, name: str, digits: int | None = None) -> str:
-    """One of a point's `QUANTITIES` as text, in the unit shown; a dash where it is not known."""
+    """Return one of a point's `QUANTITIES` as text, in the unit shown.
+
+    A dash where it is not known.
+    """
     if name == "wall_heat_share":
         heat = point.heat_balance
         known = heat is not None and math.isfinite(heat.wall_share)
@@ -116,8 +124,7 @@ def point_rows(point: OperatingPoint) -> list[Row]:
     factor, unit = QUANTITIES["side_flow"].factor, QUANTITIES["side_flow"].unit
     for k, flow in enumerate(point.supply_flow, start=1):
         rows.append(Row(f"supply flow of groove {k}", number(flow * factor), unit))
-    recesses = len(set(point.groove_pressure)) > 1  # behind restrictors, or as given
-    for k, pressure in enumerate(point.groove_pressure if recesses else (), start=1):
+    for k, pressure in enumerate(point.groove_pressure, start=1):
         rows.append(Row(f"pressure in groove {k}", number(pressure / 1e6), "MPa"))
     if np.any(np.nan_to_num(point.moment)):
         rows.append(
@@ -175,7 +182,10 @@ def coefficient_tables(table: CoefficientTable) -> Iterator[tuple[str, list[list
 
 
 def table_html_of(table: CoefficientTable) -> str:
-    """Coefficient table for notebooks: of many speeds the lowest, the middle and the highest."""
+    """Return coefficient table for notebooks.
+
+    Of many speeds the lowest, the middle and the highest.
+    """
     sizes = ", ".join(f"{table.dataset.sizes[name]} × {name}" for name in table.dataset["kxx"].dims)
     low, high = table.speeds[0] * RPM, table.speeds[-1] * RPM
     good, total, last = int(table.converged.sum()), table.converged.size, table.speeds.size - 1

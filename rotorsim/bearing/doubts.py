@@ -30,7 +30,10 @@ _HERE = "here K = -dF/dx and C = -dF/dv, F the film's force on the journal"
 
 
 def doubts(table: CoefficientTable) -> list[str]:
-    """What makes the coefficients of `table` look as if stated otherwise, a sentence each."""
+    """Return what makes the coefficients of `table` look as if stated otherwise.
+
+    A sentence each.
+    """
     usable = table.converged
     if not usable.any():
         return []

@@ -112,7 +112,10 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
 
 
 def _warm_flow(numbers: DerivedNumbers) -> list[str]:
-    """Limits that only the estimated warm film exceeds (the cold one has its own warnings)."""
+    """Return limits that only the estimated warm film exceeds.
+
+    The cold one has its own warnings.
+    """
     at = f"with the estimated warm viscosity ({numbers.warm_temperature - ZERO_CELSIUS:.0f} °C)"
     return [
         f"{name} number {warm:.4g} {at} is above {limit:g}: the film may be {what} when hot"

@@ -179,7 +179,7 @@ class FilmDynamics:
         )
 
     def _crossings(self) -> list[tuple[float, float]]:
-        """Masses at which an eigenvalue is i nu, ascending, with nu over the shaft's frequency.
+        """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed.
 
         There m nu^2 is a real eigenvalue of the reduced A(i nu).
         """
@@ -332,7 +332,7 @@ def pad_mass(bearing: Bearing) -> Array:
 
 
 def _add_bending_mass(mass: Array, bearing: Bearing, number: int, unknowns: PadUnknowns) -> None:
-    """Radial motion of a pad that bends, with its tilt and its pivot's displacement."""
+    """Return the radial motion of a pad that bends, with its tilt and its pivot's displacement."""
     pad, first = bearing.pads[number], unknowns.bends[0]
     whole, arm = _inertia(bearing, number).mass, bearing.journal_radius + pad.thickness
     for side in pad_bending(pad, bearing.journal_radius, bearing.length):
@@ -369,7 +369,7 @@ def _pad_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
 
 
 def rigid_growth_rates(dynamics: FilmDynamics, masses: Array) -> Array:
-    """Largest real part [1/s] of the eigenvalues of rigid rotors [kg] on a film and its pads."""
+    """Return the largest growth rate [1/s] of rigid rotors [kg] on a film and its pads."""
     assert dynamics.mass is not None
     pads = dynamics.mass[2:, 2:]
     if pads.size and np.linalg.eigvalsh(pads)[0] <= 0.0:

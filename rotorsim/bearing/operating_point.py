@@ -97,7 +97,7 @@ class FullCoefficients:
     mass: Array
 
     def reduced(self, s: complex) -> ComplexArray:
-        """Force per displacement that the journal feels of a motion exp(s t), (2, 2) or (4, 4)."""
+        """Return force per displacement of the journal moving as exp(s t), (2, 2) or (4, 4)."""
         law = self.stiffness + s * self.damping + s * s * self.mass
         return condensed(law, 4 if _ROTATION in self.names else 2)
 
@@ -220,7 +220,7 @@ class OperatingPoint:
         Oil that each groove must be given [m3/s], in the order of the grooves: what leaves it less
         what arrives from the film before it.
     groove_pressure : tuple of float
-        In each groove, gauge [Pa]; behind a restrictor a result.
+        In each groove, gauge [Pa]; where restrictors feed them.
     moment : (2,) array
         M_x and M_y of the film on the journal about the bearing's mid-plane [N m]; 0 where both
         halves are alike.
@@ -426,7 +426,10 @@ def failed_point(
 
 
 def plain(value: Any) -> Any:
-    """`value` made of what JSON knows: numpy, enumerations, paths and tuples are converted."""
+    """Return `value` made of what JSON knows.
+
+    Numpy, enumerations, paths and tuples are converted.
+    """
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, Mapping):

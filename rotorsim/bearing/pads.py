@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
-    """Return tilt, load, pressure and temperature of every pad; empty for a fixed bearing."""
+    """Return the tilt, load, pressure and temperature of every pad; empty for a fixed bearing."""
     problem, state, q = solution.problem, solution.state, solution.state.displacement
     if not problem.bearing.pads:
         return ()
@@ -53,7 +53,7 @@ def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
 
 
 def _deflection(bearing: Bearing, number: int, q: Array) -> float:
-    """Larger deflection [m] of a pad's two edges; 0 for a rigid pad."""
+    """Return the larger deflection [m] of a pad's two edges; 0 for a rigid pad."""
     pad, bends = bearing.pads[number], pad_unknowns(bearing)[1][number].bends
     if not bends:
         return 0.0
@@ -100,7 +100,10 @@ def supply_warnings(
 def lacking_pads(
     bearing: Bearing, cavitation: Cavitation, demand: Sequence[float]
 ) -> tuple[int, ...]:
-    """Pads that get less oil than their films' `demand` [m3/s], in a film that makes the rest."""
+    """Return pads that get less oil than their films' `demand` [m3/s].
+
+    In a film that makes the rest.
+    """
     flow = bearing.supply_flow
     if flow is None or bearing.feed is Feed.FLOODED or cavitation is Cavitation.JFO:
         return ()

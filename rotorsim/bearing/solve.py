@@ -221,7 +221,7 @@ def operating_point(
 
 
 def _within_pressure(max_pressure: float, case: Case) -> tuple[SolveStatus, str]:
-    """Whether a rigid bearing and an oil of constant viscosity mean anything at this pressure."""
+    """Return whether rigid walls and constant viscosity mean anything at this pressure."""
     if max_pressure <= _PRESSURE_LIMIT:
         return SolveStatus.CONVERGED, ""
     advice = "reduce the eccentricity ratio, the speed or the viscosity"
@@ -242,7 +242,7 @@ def _min_film_thickness(solution: FilmSolution) -> float:
 
 
 def _deflection(solution: FilmSolution, pads: Sequence[PadResult]) -> float | None:
-    """Largest elastic deflection of pads or bore [m]; None where they are rigid."""
+    """Return the largest elastic deflection of pads or bore [m]; None where they are rigid."""
     if solution.state.deflection is not None:
         return float(np.abs(solution.state.deflection).max())
     if not any(pad.youngs_modulus for pad in solution.problem.bearing.pads):
@@ -283,14 +283,17 @@ def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float
 
 
 def _shaft_temperature(solution: FilmSolution) -> float:
-    """Temperature of the journal's surface [K]; an isothermal film has the supply's throughout."""
+    """Return temperature of the journal's surface [K].
+
+    An isothermal film has the supply's throughout.
+    """
     if solution.thermal is None:
         return solution.problem.thermal.supply_temperature
     return solution.thermal.heat.shaft
 
 
 def _flow_regimes(solution: FilmSolution) -> dict[str, float]:
-    """Largest local Reynolds number rho U h F_0, and the parts of the film's area by its flow."""
+    """Return the largest rho U h F_0, and the shares of the film's area by its flow."""
     state, film = solution.state, ~solution.state.operator.fixed
     turbulent = state.layers.turbulent
     laminar = state.layers if turbulent is None else turbulent.laminar

@@ -117,7 +117,7 @@ class CoefficientTable:
         return delimited.write(self.dataset, path)
 
     def agrees_with(self, other: CoefficientTable) -> bool:
-        """Whether scenario, mesh, variables, verdicts and, to the solver's tolerance, numbers do.
+        """Return whether scenario, mesh, variables, verdicts and (to a tolerance) numbers do.
 
         How the solver got there (residuals, iterations) does not count.
         """
@@ -287,7 +287,9 @@ class CoefficientTable:
         )
 
     def at(self, speed: float, **choices: Any) -> Coefficients:
-        """Coefficients at one speed [rad/s]; exact at tabulated speeds, monotone between them.
+        """Return coefficients at one speed [rad/s].
+
+        Exact at tabulated speeds, monotone between them.
 
         Raises
         ------

@@ -178,7 +178,7 @@ def cf_attributes(name: str) -> dict[str, str]:
 
 
 def from_points(points: Sequence[OperatingPoint], attributes: dict[str, Any]) -> xr.Dataset:
-    """Dataset over thermal model (in order of appearance), clearance and speed (ascending)."""
+    """Return dataset over thermal model, clearance and speed, both ascending."""
     if not points:
         raise TableError("a table needs at least one operating point", key="points")
     models = list(dict.fromkeys(str(p.thermal_model) for p in points))

@@ -108,7 +108,10 @@ def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> _RouthCoeffi
 
 
 def _verdicts(routh: _RouthCoefficients) -> NDArray[np.str_]:
-    """`Stability` of every point; with K_e > 0 only the signs of det C and det(K - K_e I) count."""
+    """Return `Stability` of every point.
+
+    With K_e > 0 only the signs of det C and det(K - K_e I) count.
+    """
     det_c, shifted = np.broadcast_arrays(routh.det_damping, routh.det_shifted)
     possible = routh.may_be_stable
     verdict = np.full(np.shape(possible), str(Stability.ALWAYS_UNSTABLE), dtype="U18")
@@ -292,7 +295,10 @@ class FrequencyScan:
         return round((2.0 * np.pi - (phase[-1] - phase[0])) / np.pi)
 
     def least_damped(self, mass: float, count: int = 4) -> Array:
-        """Frequencies [rad/s] near which det(A - M nu^2) is smallest: first guesses of modes."""
+        """Return frequencies [rad/s] near which det(A - M nu^2) is smallest.
+
+        First guesses of modes.
+        """
         frequency = self.speed * _FINE
         matrices = self.curve(_FINE) - mass * frequency[:, None, None] ** 2 * np.eye(2)
         values = np.linalg.svd(matrices, compute_uv=False)
@@ -301,7 +307,7 @@ class FrequencyScan:
         return frequency[inner[np.argsort(off[inner])][:count]]
 
     def _crossings(self) -> list[tuple[float, float]]:
-        """Masses at which an eigenvalue is i nu, ascending, with nu over the shaft's frequency."""
+        """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed."""
         values = _misfit(self.curve(_FINE), self.speed * _FINE)
         found = []
         for i in np.flatnonzero(values[1:] * values[:-1] < 0.0):

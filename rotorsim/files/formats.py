@@ -197,12 +197,12 @@ def _write_matlab(table: CoefficientTable, path: Path) -> Path:
 
 
 def _matrices(values: np.ndarray) -> np.ndarray:
-    """From (..., speed, 2, 2) to (2, 2, speed, ...)."""
+    """Turn (..., speed, 2, 2) to (2, 2, speed, ...)."""
     return np.moveaxis(values, (-2, -1), (0, 1)).transpose(0, 1, *range(values.ndim - 1, 1, -1))
 
 
 def _cells(texts: Any) -> np.ndarray:
-    """Cell array of texts."""
+    """Return the cell array of texts."""
     source = np.asarray(texts, dtype=object)
     cells = np.empty(source.shape, dtype=object)
     for index in np.ndindex(source.shape):

@@ -262,7 +262,10 @@ class MachineFile:
                     place_named(self, place, f"control.{word}[{i}]")
 
     def with_parts(self, **parts: Any) -> MachineFile:
-        """Machine with some of its parts replaced; bearings and tables are not read again."""
+        """Return machine with some of its parts replaced.
+
+        Bearings and tables are not read again.
+        """
         bearings = parts.pop("bearings", self.bearings)
         other = replace(self, **parts)
         other.__dict__.update(bearings=bearings, tables=self.tables)
@@ -361,7 +364,7 @@ class MachineFile:
 
 
 def _table(path: Path, bearing: str | None, key: str) -> CoefficientTable:
-    """Table of one bearing in a file; `key` is the machine file's that names it."""
+    """Return the table of one bearing in a file; `key` is the machine file's that names it."""
     try:
         return read_table(path, bearing=bearing)
     except TableError as error:
@@ -391,7 +394,7 @@ def load_machine(path: str | Path) -> MachineFile:
 
 
 def is_machine(path: str | Path) -> bool:
-    """Whether a file describes a machine: it has supports, or a rotor of sections.
+    """Return whether a file describes a machine: it has supports, or a rotor of sections.
 
     A file that cannot be read is none; whoever reads it as something else says why.
     """

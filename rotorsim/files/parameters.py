@@ -106,7 +106,7 @@ class Parameter:
         return PARAMETERS[self.kind].sign
 
     def read(self, text: object, key: str) -> float:
-        """Value [SI] of a text with its unit; of a factor a plain number."""
+        """Return the value [SI] of a text with its unit; of a factor a plain number."""
         kind = PARAMETERS[self.kind]
         if kind.quantity is None:
             try:
@@ -125,7 +125,10 @@ class Parameter:
         return value
 
     def values(self, given: object, key: str) -> list[float]:
-        """Ascending values [SI]: a list of texts, ``"a, b, c"``, or ``"start : stop : count"``."""
+        """Return ascending values [SI]: a list of texts, ``"a, b, c"``, or ``"start : stop .
+
+        Count"``.
+        """
         if isinstance(given, Mapping):
             given = " : ".join(str(given.get(part, "")) for part in ("start", "stop", "count"))
         if not isinstance(given, str):
@@ -149,7 +152,7 @@ class Parameter:
         return found
 
     def spread(self, text: object, key: str) -> Spread:
-        """Tolerance about the nominal value: ``"5 um"``, ``"10 %"``; see `parse_spread`."""
+        """Return tolerance about the nominal value: ``"5 um"``, ``"10 %"``; see `parse_spread`."""
         kind = PARAMETERS[self.kind]
         quantity = kind.quantity
         if quantity == "temperature":
@@ -162,7 +165,7 @@ class Parameter:
             raise InputError(error.message, key=key, value=text) from None
 
     def nominal(self, machine: MachineFile) -> float | None:
-        """Value that the file gives; None where it gives none, or several."""
+        """Return the value that the file gives; None where it gives none, or several."""
         beam = machine.rotor.beam
         match self.kind:
             case "radial_clearance":
@@ -198,7 +201,7 @@ class Parameter:
         return machine.support[machine.support_names.index(self.owner)]
 
     def applied(self, variant: Variant, value: float) -> Variant:
-        """Variant with this value [SI]; the speed is none of its."""
+        """Return the variant with this value [SI]; the speed is none of its."""
         machine = variant.machine
         beam = machine.rotor.beam
         match self.kind:
@@ -241,12 +244,12 @@ class Parameter:
 
 
 def _same(values: Sequence[float]) -> float | None:
-    """The value that all have; None where they differ, or there are none."""
+    """Return the value that all have; None where they differ, or there are none."""
     return values[0] if values and all(one == values[0] for one in values) else None
 
 
 def _scaled(disc: Any, mass: float) -> Any:
-    """Disc of another mass: its inertias follow, as for another density."""
+    """Return the disc of another mass: its inertias follow, as for another density."""
     ratio = mass / disc.mass if disc.mass else 0.0
     return replace(
         disc, mass=mass, polar_inertia=ratio * disc.polar_inertia,
@@ -255,7 +258,7 @@ def _scaled(disc: Any, mass: float) -> Any:
 
 
 def parameter(machine: MachineFile, name: str, key: str) -> Parameter:
-    """Parameter of a machine by its name.
+    """Return the parameter of a machine by its name.
 
     name : A word of `PARAMETERS`; before a dot the support, disc or place it belongs to.
     key : Where the name stands, for messages.
@@ -312,7 +315,7 @@ def _example(machine: MachineFile) -> str:
 
 
 def _owners(machine: MachineFile, word: str) -> list[str]:
-    """Names that a parameter of a kind may have before its dot."""
+    """Return names that a parameter of a kind may have before its dot."""
     if PARAMETERS[word].owner == "film":
         return list(machine.bearings)
     if PARAMETERS[word].owner == "disc":
@@ -330,7 +333,7 @@ def _owners(machine: MachineFile, word: str) -> list[str]:
 
 
 def place_named(machine: MachineFile, text: str, key: str) -> float:
-    """Place on the shaft [m]: of a disc, support, seal, probe or clearance, or a length."""
+    """Return place on the shaft [m]: of a disc, support, seal, probe or clearance, or a length."""
     known = dict(zip(machine.support_names, (one.at for one in machine.support), strict=True))
     for entries in (machine.rotor.beam.discs, machine.seal, machine.probe, machine.clearance):
         for entry in entries:
@@ -351,7 +354,7 @@ def place_named(machine: MachineFile, text: str, key: str) -> float:
 
 
 def _places(machine: MachineFile, owner: str, key: str, name: str) -> dict[float, float]:
-    """Places of a destabilising stiffness and their shares."""
+    """Return places of a destabilising stiffness and their shares."""
     if owner:
         return {place_named(machine, owner, key): 1.0}
     anticipated = machine.lateral.destabilising_stiffness
@@ -368,7 +371,7 @@ def _places(machine: MachineFile, owner: str, key: str, name: str) -> dict[float
 
 
 def held_values(machine: MachineFile, texts: object, key: str) -> dict[Parameter, float]:
-    """Parameters that are held at values, from a table of texts by name."""
+    """Return parameters that are held at values, from a table of texts by name."""
     if not isinstance(texts, Mapping):
         raise InputError('must be a table: { "left.radial_clearance" = "80 um" }', key=key)
     found = {}
@@ -379,7 +382,7 @@ def held_values(machine: MachineFile, texts: object, key: str) -> dict[Parameter
 
 
 def spreads(machine: MachineFile, texts: object, key: str) -> dict[Parameter, Spread]:
-    """Tolerances by parameter, from a table of texts by name."""
+    """Return tolerances by parameter, from a table of texts by name."""
     if not isinstance(texts, Mapping) or not texts:
         raise InputError(
             f'must be a table: spread = {{ "{_example(machine)}" = "5 %" }}', key=key, value=texts

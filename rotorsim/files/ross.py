@@ -50,7 +50,7 @@ _WEIGHT_FRAME = (
 
 
 def _frame_of_ross(load_direction: float = _WEIGHT) -> tuple[str, ...]:
-    """Lines that say what coefficients in the frame of ROSS mean.
+    """Return lines that say what coefficients in the frame of ROSS mean.
 
     load_direction : Where the static load points [rad], from x of ROSS towards its y.
     """
@@ -73,7 +73,7 @@ def _frame_of_ross(load_direction: float = _WEIGHT) -> tuple[str, ...]:
 
 
 def _in_degrees(load_direction: float) -> float:
-    """Direction in degrees, from -180 to 180.
+    """Return the direction in degrees, from -180 to 180.
 
     Rounded to 1e-10, so that what a file says of it is what its numbers were turned by.
 
@@ -105,13 +105,13 @@ def _to_ross(matrices: Array, load_direction: float = _WEIGHT) -> Array:
 
 
 def _from_ross(matrices: Array, load_direction: float = _WEIGHT) -> Array:
-    """Inverse of `_to_ross`."""
+    """Return the inverse of `_to_ross`."""
     turn = _turn(load_direction)
     return turn.T @ matrices @ turn
 
 
 def _turn(load_direction: float) -> Array:
-    """(2, 2): components in the frame of ROSS from those in the load frame."""
+    """Return (2, 2): components in the frame of ROSS from those in the load frame."""
     degrees = _in_degrees(load_direction)
     cosine, sine = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     if degrees % 90.0 == 0.0:  # numbers only change places and signs, to the last digit
@@ -178,7 +178,7 @@ def write(curve: Curve, path: Path, load_direction: float = _WEIGHT, *, version:
 
 
 def is_saved_by_ross(path: Path) -> bool:
-    """Whether a file is TOML or JSON with a bearing in it."""
+    """Return whether a file is TOML or JSON with a bearing in it."""
     try:
         return _is_ross(_entries(path))
     except TableError:
@@ -186,12 +186,12 @@ def is_saved_by_ross(path: Path) -> bool:
 
 
 def _is_ross(entries: Any) -> bool:
-    """Whether a file's entries are elements that ROSS saved."""
+    """Return whether a file's entries are elements that ROSS saved."""
     return isinstance(entries, dict) and bool(_bearings(entries))
 
 
 def _bearings(entries: dict[str, Any]) -> dict[str, dict[str, Any]]:
-    """Bearings (and seals) of a file, by the names of their tables."""
+    """Return bearings (and seals) of a file, by the names of their tables."""
     return {
         name: entry
         for name, entry in entries.items()
@@ -202,7 +202,7 @@ def _bearings(entries: dict[str, Any]) -> dict[str, dict[str, Any]]:
 def read(
     path: str | Path, load_direction: float | None = None, bearing: str | None = None
 ) -> CoefficientTable:
-    """Table of a bearing that ROSS, or `write`, saved to `path` (TOML or JSON).
+    """Return the table of a bearing that ROSS, or `write`, saved to `path` (TOML or JSON).
 
     path : str or Path
     load_direction : Where the static load points in the frame of ROSS [rad], from x towards y; by
@@ -222,7 +222,7 @@ def read(
 
 
 def _chosen(found: dict[str, dict[str, Any]], wanted: str | None, source: Path) -> dict[str, Any]:
-    """Bearing of that tag or table name; the only one where none is named."""
+    """Return the bearing of that tag or table name; the only one where none is named."""
     tags = [
         str(entry.get("tag") or name.partition("_")[2] or name) for name, entry in found.items()
     ]
@@ -254,12 +254,12 @@ def _chosen(found: dict[str, dict[str, Any]], wanted: str | None, source: Path) 
 
 
 def _numbers(entry: dict[str, Any]) -> dict[str, Any]:
-    """What makes two bearings the same."""
+    """Return what makes two bearings the same."""
     return {name: value for name, value in entry.items() if name not in ("n", "tag", "color")}
 
 
 def _direction(entries: dict[str, Any], given: float | None, source: Path) -> float:
-    """Direction of the static load [rad]: the file's, or `given`, or that of the weight."""
+    """Return direction of the static load [rad]: the file's, or `given`, or that of the weight."""
     if _OWN not in entries:
         return _WEIGHT if given is None else given
     own, key = entries[_OWN], f"{_OWN}.{_DIRECTION}"
@@ -352,7 +352,7 @@ def _axis(bearing: dict[str, Any], source: Path) -> str | None:
 
 
 def _column(bearing: dict[str, Any], name: str, count: int | None, source: Path) -> Array:
-    """Numbers of a key: `count`, or one that holds for all."""
+    """Return numbers of a key: `count`, or one that holds for all."""
     value = bearing.get(name, 0.0)
     numbers = value if isinstance(value, list) else [value]
     if count is not None and len(numbers) not in (1, count):
@@ -392,7 +392,7 @@ class Curve:
 
 
 def curves(table: CoefficientTable) -> Iterator[Curve]:
-    """Every curve of `table` that has a converged point.
+    """Return every curve of `table` that has a converged point.
 
     Raises TableError: No point of the table converged.
     """
@@ -483,7 +483,7 @@ _UNUSUAL = {
 
 
 def read_rotor(path: str | Path) -> Drawing:
-    """Drawing of a rotor that ROSS (2.x or 3.x) saved with ``Rotor.save``, TOML or JSON.
+    """Return the drawing of a rotor that ROSS (2.x or 3.x) saved with ``Rotor.save``, TOML or JSON.
 
     The machine's x points down, y along the x of ROSS; the shaft turns clockwise seen from the left
     end. An element of ROSS becomes a section of one element, elements beside each other layers, a
@@ -623,13 +623,13 @@ class _Imported:
         return self.places[node]
 
     def _mass(self, entry: _Table) -> tuple[float, float]:
-        """Along x and y of ROSS."""
+        """Return the parts along x and y of ROSS."""
         both = entry.get("m")
         x, y = (both if entry.get(key) is None else entry[key] for key in ("mx", "my"))
         return float(x or 0.0), float(y or 0.0)
 
     def _constants(self, name: str, entry: _Table) -> _Table:
-        """Constant matrices in the machine's frame."""
+        """Return the constant matrices in the machine's frame."""
         found: _Table = {}
         for key, letter in _MATRICES.items():
             direct = entry.get(f"{letter}xx", 0.0)

@@ -98,7 +98,7 @@ def _check_names(data: Mapping[str, Any], source: Path, nodes_given: bool) -> No
 
 
 def _matrix(value: NDArray[Any]) -> NDArray[Any]:
-    """Matrix of real or complex numbers."""
+    """Return the matrix of real or complex numbers."""
     return value if np.iscomplexobj(value) else value.astype(float)
 
 
@@ -125,7 +125,7 @@ class _Unsuited(Exception):
 
 
 def _read_arrays(source: Path) -> dict[str, NDArray[Any]]:
-    """Arrays of a .npz or .mat file (up to version 7) by name, sparse ones as full matrices.
+    """Return arrays of a .npz or .mat file (up to version 7) by name, sparse ones as full matrices.
 
     Raises InputError: The file cannot be read, is damaged, holds something else than numbers, or
         arrays that are too large for a rotor.
@@ -163,7 +163,7 @@ def _numpy_arrays(data: bytes) -> Iterator[tuple[str, NDArray[Any]]]:
 
 
 def _numpy_array(data: bytes) -> NDArray[Any]:
-    """Array of a .npy file, without pickled objects."""
+    """Return the array of a .npy file, without pickled objects."""
     stream = io.BytesIO(data)
     version = np.lib.format.read_magic(stream)
     read_header = {
@@ -193,7 +193,10 @@ def _matlab_arrays(data: bytes) -> Iterator[tuple[str, NDArray[Any]]]:
 
 
 def _inflated(data: bytes) -> int:
-    """Bytes of a MATLAB file when all of it is inflated; no more of it than one block at a time."""
+    """Return bytes of a MATLAB file when all of it is inflated.
+
+    No more of it than one block at a time.
+    """
     if not data.startswith(b"MATLAB 5.0"):
         return len(data)
     order = "<" if data[126:128] == b"IM" else ">"
@@ -211,7 +214,7 @@ def _inflated(data: bytes) -> int:
 
 
 def _full(value: Any, name: str) -> NDArray[Any]:
-    """Sparse matrix by columns as a full one, its indices checked first."""
+    """Return the sparse matrix by columns as a full one, its indices checked first."""
     rows, columns = value.shape
     indices, starts = np.asarray(value.indices), np.asarray(value.indptr)
     good = (

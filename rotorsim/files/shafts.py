@@ -36,7 +36,7 @@ _SPEEDS = '{ start = "500 rpm", stop = "10000 rpm", count = 20 }   # the range o
 
 
 def machine_text(path: Path, title: str) -> tuple[str, Mapping[str, CoefficientTable]]:
-    """TOML text of a machine from another drawing, and tables that it names by file.
+    """Return TOML text of a machine from another drawing, and tables that it names by file.
 
     path : A rotor that ROSS saved (``.toml``, ``.json``), or a table of sections (``.csv``).
     Raises InputError: The file is neither, or holds what a machine file cannot.
@@ -83,7 +83,7 @@ def _text(drawing: ross.Drawing, title: str, source: str) -> str:
 
 
 def _entries(table: Mapping[str, object]) -> list[str]:
-    """Lines of a TOML table; numbers get the unit of their key."""
+    """Return lines of a TOML table; numbers get the unit of their key."""
     return [f"{key} = {_value(value, ross.UNITS.get(key, ''))}" for key, value in table.items()]
 
 
@@ -98,7 +98,7 @@ def _value(value: object, unit: str) -> str:
 
 
 def _sections(source: Path) -> tuple[list[dict[str, object]], list[dict[str, object]]]:
-    """Sections and discs of a table."""
+    """Return sections and discs of a table."""
     lines, _ = delimited.cells(source, lambda names: {"length", "outer_diameter"} <= set(names),
                                _OTHER_NAMES)  # fmt: skip
     if len(lines) < 2:

@@ -50,19 +50,19 @@ class BendingModes:
     section: tuple[float, float, float]
 
     def at(self, angle: Array) -> Array:
-        """Shapes at angles from the pivot [rad], (modes, ...); 0 on the other side."""
+        """Return shapes at angles from the pivot [rad], (modes, ...); 0 on the other side."""
         away = np.maximum(angle * math.copysign(1.0, self.side), 0.0)
         kernel = _compliance(away[..., None], self.points, *self.section)
         weight = abs(self.side) / self.points.size
         return np.moveaxis(kernel @ (weight * self.loads).T, -1, 0)
 
     def mean(self, function: Array) -> Array:
-        """Mean over the side of each shape times a function at the points, (modes,)."""
+        """Return the mean over the side of each shape times a function at the points, (modes,)."""
         return np.asarray(self.values @ function / self.points.size)
 
 
 def _compliance(a: Array, b: Array, bent: float, sheared: float, radius: float) -> Array:
-    """f(a, b) [m/N]; `bent`: r^2/EI + 1/EA, `sheared`: 1/kGA [1/N]."""
+    """Return f(a, b) [m/N]; `bent`: r^2/EI + 1/EA, `sheared`: 1/kGA [1/N]."""
     upper, apart = np.minimum(a, b), np.abs(a - b)
     # sin sin and cos cos integrated from 0 to the nearer place
     difference = 0.5 * (np.sin(a + b) - np.sin(a + b - 2.0 * upper))

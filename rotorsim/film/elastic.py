@@ -57,7 +57,7 @@ class ElasticBore:
         self.last = np.zeros(self.mesh.shape)
 
     def spread(self, deflection: Field) -> Field:
-        """Deflection at cell centres and faces, (5, n, m), straight between the centres."""
+        """Return deflection at cell centres and faces, (5, n, m), straight between the centres."""
         mesh, w = self.mesh, deflection
         size = np.diff(mesh.theta_faces)[:, None]
         before, ahead = np.roll(size, 1, axis=0), np.roll(w, 1, axis=0)
@@ -105,7 +105,10 @@ class ElasticBore:
         return state, off
 
     def _missing(self, state: FilmState, share: float) -> tuple[Array, float]:
-        """Deflection that the pressure asks for beyond the state's own; over the thinnest film."""
+        """Return deflection that the pressure asks for beyond the state's own.
+
+        Over the thinnest film.
+        """
         missing = share * self.compliance(state.solution.pressure) - _deflection(state)
         return missing, float(np.abs(missing).max()) / state.min_thickness
 
@@ -159,7 +162,7 @@ class ElasticBore:
         return np.stack(found)
 
     def squeezing(self, state: FilmState, pressures: Field) -> Field:
-        """What a bore that gives way at the rates of its deflection adds to continuity."""
+        """Return what a bore that gives way at the rates of its deflection adds to continuity."""
         area = state.problem.rupture.squeezed_area(state.operator, state.solution)
         open_ = state.operator.fixed & ~filled_cells(state.solution.factor)
         moving = np.where(open_, 0.0, -area)
@@ -167,7 +170,10 @@ class ElasticBore:
 
 
 def _beyond(values: Field, sizes: Array) -> Field:
-    """Value (n, 1) at the outer face of the first of two cells, straight on from their centres."""
+    """Return value (n, 1) at the outer face of the first of two cells.
+
+    Straight on from their centres.
+    """
     slope = (values[:, :1] - values[:, 1:2]) / (0.5 * (sizes[0] + sizes[1]))
     return np.asarray(values[:, :1] + 0.5 * sizes[0] * slope)
 
@@ -209,7 +215,7 @@ def elastic_bore(bearing: Bearing, mesh: FilmMesh) -> ElasticBore | None:
 
 
 def _ring(bush: ThinBush, bearing: Bearing, mesh: FilmMesh) -> Array:
-    """Deflection of a thin ring on springs per pressure around it [m/Pa], (n, n).
+    """Return the deflection of a thin ring on springs per pressure around it [m/Pa], (n, n).
 
     Its wave n times around costs EI (n^2 - 1)^2/r^4 (it bends without stretching), the even one
     EA/r^2, besides the springs; r is the radius of its middle.

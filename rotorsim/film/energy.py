@@ -64,7 +64,7 @@ class EnergyProblem:
     dy: Array
 
     def wall_conductance(self, layer: int) -> Array:
-        """Conductance [W/K] from the bush (layer 0) or the shaft (-1) to the layer beside it."""
+        """Return conductance [W/K] from bush (layer 0) or shaft (-1) to the layer beside it."""
         turbulent = self.layers.turbulent
         eddies = 1.0 if turbulent is None else turbulent.conduction[:, :, layer]
         return 2.0 * self.conductance * eddies

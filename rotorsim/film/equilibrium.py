@@ -83,7 +83,7 @@ class LoadSearch:
     unreachable: bool = False
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
-        """Newton's next displacements, and how far the force is off, relative to the load."""
+        """Return Newton's next displacements, and the force's error over the load."""
         scales = self.geometry.displacements.scales / self.clearance
         missing = (state.force + self.load) * scales
         size = math.hypot(*(self.load * scales)) or pressure_force(state)
@@ -125,12 +125,12 @@ class FixedRatio:
     unreachable: bool = False
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
-        """Return that position."""
+        """Return the that position."""
         del state
         return np.array([self.eccentricity_ratio * self.clearance, 0.0]), 0.0
 
     def allowed(self, _old: Array, _new: Array, /) -> Array:
-        """Return that position."""
+        """Return the that position."""
         return np.array([self.eccentricity_ratio * self.clearance, 0.0])
 
     def grown(self, problem: FilmProblem) -> None:
@@ -170,7 +170,7 @@ class AttitudeSearch:
     _last: tuple[float, float] | None = None
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
-        """Newton's next position, and the force across the load line relative to the force."""
+        """Return Newton's next position, and the share of the force across the load line."""
         angle = math.atan2(state.displacement[1], state.displacement[0])
         size = float(np.hypot(*state.force))
         if not size > 0.0:

@@ -280,7 +280,10 @@ class _TurningSearch:
         return min(least, key=least.__getitem__, default=(0.0, 0.0))
 
     def regions(self, near: _Position | None) -> Iterator[tuple[_Corner, _Corner]]:
-        """Regions to look at, between two corners: around a position, then the whole clearance."""
+        """Return regions to look at, between two corners.
+
+        Around a position, then the whole clearance.
+        """
         if near is not None:
             angle = math.atan2(near[1], near[0])
             share = math.hypot(*near) / self.field.reach(angle, self.least)
@@ -290,7 +293,7 @@ class _TurningSearch:
         yield (_CENTRE, 0.0), (1.0, 2.0 * math.pi)
 
     def jump_at_centre(self) -> Crossing | None:
-        """Where the film's beginning jumps as the journal passes the centre, and takes the turn."""
+        """Search where the film's beginning jumps as the journal passes the centre."""
         ring = [(_CENTRE, angle) for angle in np.linspace(0.0, 2.0 * math.pi, _ANGLES + 1).tolist()]
         if not round(sum(self.turn(*pair, _RIM_SPLITS) for pair in pairwise(ring)) / math.tau):
             return None

@@ -81,7 +81,10 @@ def film_flow(state: FilmState) -> FilmFlow:
 
 
 def _couette_multiplier(operator: FilmOperator, layers: LayerIntegrals) -> Array:
-    """Drag of the west and east faces over the shear shares that it is spread on: their c."""
+    """Return drag of the west and east faces over the shear shares that it is spread on.
+
+    Their c.
+    """
     share = 1.0 - layers.g
     beside = np.stack([np.roll(share, 1, axis=0), np.roll(share, -1, axis=0)])
     return operator.couette / np.where(operator.interior[:2], 0.5 * (share + beside), share)

@@ -63,7 +63,7 @@ class Displacements:
     scales: Array
 
     def joined(self, others: Displacements) -> Displacements:
-        """Return these displacements and, behind them, the `others`."""
+        """Return the these displacements and, behind them, the `others`."""
         return Displacements(
             self.names + others.names,
             np.concatenate([self.shapes, others.shapes]),
@@ -103,7 +103,10 @@ class FilmGeometry:
         return float(np.min(thickness, where=self.land, initial=np.inf))
 
     def thinnest_at(self, q: Array) -> float:
-        """Smallest film thickness [m] of the lands at `q`; not positive where the walls touch."""
+        """Return smallest film thickness [m] of the lands at `q`.
+
+        Not positive where the walls touch.
+        """
         return self.thinnest(self.thickness(q))
 
     def without(self, columns: Booleans, q: Array) -> FilmGeometry:
@@ -127,7 +130,7 @@ class FilmGeometry:
 
 
 def film_geometry(bearing: Bearing, mesh: FilmMesh) -> FilmGeometry:
-    """Geometry of a bearing's film, displaced by the journal's translations and by its pads."""
+    """Return geometry of a film, displaced by the journal's translations and its pads."""
     inward = 1e-9 * np.diff(mesh.theta_faces)
     inside = _angles(mesh) + np.stack([np.zeros_like(inward), inward, -inward])
     if bearing.pads:
@@ -209,7 +212,10 @@ def pad_face(
 
 
 def _pads_at_rest(bearing: Bearing, mesh: FilmMesh) -> Array:
-    """H [m] of untilted pads around a centred journal, (3, n): centres, west and east faces."""
+    """Return H [m] of untilted pads around a centred journal, (3, n).
+
+    Centres, west and east faces.
+    """
     theta = _angles(mesh)
     h = np.full(theta.shape, bearing.radial_clearance)
     for number, pad in enumerate(bearing.pads):
@@ -265,7 +271,10 @@ def rotations(bearing: Bearing, mesh: FilmMesh) -> Displacements:
 
 
 def idle_pitches(bearing: Bearing) -> tuple[int, ...]:
-    """Pads, from 0, that pitch only where the journal turns out of line: aligned, none does."""
+    """Return pads, from 0, that pitch only where the journal turns out of line.
+
+    Aligned, none does.
+    """
     if not bearing.is_symmetric:
         return ()
     return tuple(number for number, pad in enumerate(bearing.pads) if pad.pivot.pitches)

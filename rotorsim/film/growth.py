@@ -53,7 +53,7 @@ def hot_clearances(cold: Bearing, expansion: Expansion, shaft: float, bodies: Ar
 
 
 def clearances(bearing: Bearing) -> Array:
-    """Return machined and assembled clearance of the bore, or of each pad [m], (solids, 2)."""
+    """Return the machined and assembled clearance of the bore, or of each pad [m], (solids, 2)."""
     machined, preload = [bearing.radial_clearance], [arc.preload for arc in bearing.arcs]
     preloads = [max(preload, default=0.0)]
     if bearing.pads:

@@ -171,7 +171,10 @@ def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature:
 
 
 def _leaving_temperature(energy: EnergyProblem, temperature: Array) -> float:
-    """Mean temperature of the oil that leaves the film at its ends and edges [K]; 0 without any."""
+    """Return mean temperature of the oil that leaves the film at its ends and edges [K].
+
+    0 without any.
+    """
     flow = heat = 0.0
     for face, outward in ((EAST, 1.0), (SOUTH, -1.0), (NORTH, 1.0)):
         open_ = _exits(energy) if face == EAST else ~energy.interior[face] & ~energy.fixed

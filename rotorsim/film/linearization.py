@@ -83,7 +83,10 @@ class _Motions:
         return np.asarray(-multiplicity * shapes @ perturbed.reshape(len(pressures), -1).T)
 
     def derivatives(self) -> tuple[Array, Array]:
-        """-dQ_i/dq_j and -dQ_i/dq_j-dot, (q, q) each; a shape that follows moves oil itself."""
+        """Return -dQ_i/dq_j and -dQ_i/dq_j-dot, (q, q) each.
+
+        A shape that follows moves oil itself.
+        """
         still, moving = np.split(self.sources(), 2)
         pressures = self.pressures(still, self.factor)
         stiffness = self.forces(pressures)

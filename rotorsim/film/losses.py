@@ -51,7 +51,7 @@ def friction_force(state: FilmState, fraction: Array) -> float:
 
 
 def journal_moment(state: FilmState) -> Array:
-    """Moments (M_x, M_y) of the film on the journal about its mid-plane [N m], film frame."""
+    """Return the film's moments (M_x, M_y) on the journal [N m], film frame."""
     problem = state.problem
     if problem.mesh.half:
         return np.zeros(2)
@@ -92,7 +92,9 @@ def _end_leakage(state: FilmState) -> Array:
 
 
 def supply_flow(state: FilmState, flow: FilmFlow) -> Array:
-    """Oil that each groove must be given [m3/s]: what leaves it less what arrives from the film.
+    """Return oil that each groove must be given [m3/s].
+
+    What leaves it less what arrives from the film.
 
     Oil that the rupture condition makes where a film forms again (all but the mass-conserving one
     do) has not arrived from anywhere: the next groove gives it. The sum is thus the side flow.
@@ -114,14 +116,16 @@ def supply_flow(state: FilmState, flow: FilmFlow) -> Array:
 
 
 def groove_pressures(state: FilmState) -> tuple[float, ...]:
-    """Return the pressure in each groove [Pa], gauge."""
+    """Return the pressure in each groove [Pa], gauge; empty where no restrictor decides one."""
+    grooves = state.problem.bearing.grooves
+    if all(groove.restrictor is None for groove in grooves):
+        return ()
     supply, pressure = state.problem.mesh.supply, state.solution.pressure
-    numbers = range(len(state.problem.bearing.grooves))
-    return tuple(float(np.max(pressure[supply == k], initial=0.0)) for k in numbers)
+    return tuple(float(np.max(pressure[supply == k], initial=0.0)) for k in range(len(grooves)))
 
 
 def _made_oil(state: FilmState, flow: FilmFlow) -> Array:
-    """Oil that the rupture condition makes in each column and at its first face [m3/s], (n,)."""
+    """Return oil made by rupture in each column and at its first face [m3/s], (n,)."""
     west, east, south, north = flow.flux
     interior, film = state.operator.interior, ~state.operator.fixed
     made = np.where(film, east - west + north - south, 0.0)

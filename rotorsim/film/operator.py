@@ -91,7 +91,9 @@ class StepFaces:
         return self.own_couette * self.share + self.other_couette * (1.0 - self.share)
 
     def half_losses(self, full: Booleans) -> Array:
-        """Half the power that pressure on the face itself costs [W], where both cells are full.
+        """Return half the power that pressure on the face itself costs [W].
+
+        Where both cells are full.
 
         What the Couette flows of both sides differ by flows off against both half cells.
         """
@@ -262,7 +264,10 @@ def _step_faces(
 
 @kernel
 def neighbour(face: int, i: int, j: int, n: int, m: int) -> tuple[int, int]:
-    """Cell behind a face: round the bearing the film closes, along it the ends stand for it."""
+    """Return cell behind a face: round the bearing the film closes.
+
+    Along it the ends stand for it.
+    """
     if face == 0:
         return (i - 1 if i > 0 else n - 1), j
     if face == 1:

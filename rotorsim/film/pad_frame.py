@@ -61,7 +61,10 @@ class PadFrame:
         return tilt + float(ahead.max()), tilt + float(behind.min())
 
     def idle_tilt(self, limits: tuple[float, float], q: Array) -> float:
-        """Tilt [rad] at which the film diverges all over the pad, as far as there is room."""
+        """Return tilt [rad] at which the film diverges all over the pad.
+
+        As far as there is room.
+        """
         along = self.eccentricity(q)[0]
         edge = (1.0 if along <= 0.0 else -1.0) * self._half_beyond(along)
         low, high = limits
@@ -76,7 +79,10 @@ class PadFrame:
 
 
 def bending_springs(bearing: Bearing, pad: Pad) -> Array:
-    """Stiffness of the shapes in which a pad bends [N/m], in the order of `PadUnknowns.bends`."""
+    """Return stiffness of the shapes in which a pad bends [N/m].
+
+    In the order of `PadUnknowns.bends`.
+    """
     if pad.youngs_modulus is None:
         return np.zeros(0)
     sides = pad_bending(pad, bearing.journal_radius, bearing.length)

@@ -94,7 +94,7 @@ def solve_pads(
 def _in_turn(
     search: PadSearch, thermal: ThermalFilm, cold: _Cold, walls: WallsOf
 ) -> FilmSolution:  # fmt: skip
-    """Position and temperatures in turn, where they do not settle together: soft pivots, mostly.
+    """Solve position and temperatures in turn, for soft pivots they do not settle together.
 
     `thermal` and `cold` are what was found before, for where this does not settle either.
     """
@@ -198,7 +198,10 @@ def _by_attitude(search: PadSearch, layers: LayerIntegrals) -> _Cold | None:
 
 
 def _thermal(search: PadSearch, q: Array, heat: Heat, walls: WallsOf) -> ThermalFilm:
-    """Temperatures and equilibrium together, again where other pads turn out to be unloaded."""
+    """Solve temperatures and equilibrium together.
+
+    Again where other pads turn out to be unloaded.
+    """
     iterations, revisions = 0, 0
     while True:
         film = solve_thermal_film(

@@ -109,7 +109,7 @@ class PadSearch:
         return q
 
     def at(self, angle: float) -> Array | None:
-        """Displacements with the journal at the given eccentricity and an attitude `angle` [rad].
+        """Return displacements with the journal at an eccentricity and `angle` [rad].
 
         None where it would touch a pad.
         """
@@ -122,7 +122,7 @@ class PadSearch:
         return q if self.whole.geometry.thinnest_at(self._with_room(q)) > 0.0 else None
 
     def reach(self, angle: float) -> float:
-        """Distance from the centre at which the journal, moved along `angle`, touches a pad [m].
+        """Return how far the journal, moved along `angle`, gets until it touches a pad [m].
 
         Pads on flexible pivots give way and do not count.
         """
@@ -134,7 +134,10 @@ class PadSearch:
         return min(distances)
 
     def nearer(self, q: Array) -> Array | None:
-        """Half-way on to the pads along the load, for a journal that no pad carries where it is."""
+        """Move half-way on to the pads along the load.
+
+        For a journal that no pad carries where it is.
+        """
         if isinstance(self.target, EccentricityTarget) or is_unloaded(self.target):
             return None
         q = q.copy()
@@ -190,7 +193,7 @@ class PadSearch:
         return missing
 
     def _pivot_under(self, state: FilmState, frame: PadFrame) -> tuple[float, float]:
-        """Deflection of a pad's pivot under the film's force, and the pivot's stiffness there.
+        """Return deflection and stiffness of a pad's pivot under the film's force.
 
         Newton's method takes the pivot's law at the film's force rather than at the deflection:
         a contact without load has no stiffness.
@@ -201,7 +204,7 @@ class PadSearch:
         return deflection, frame.pad.pivot.stiffness_at(deflection)
 
     def stiffness(self, state: FilmState) -> Array:
-        """Return film, pivots and bent pads, (q, q); an unloaded pad's unknowns stand alone."""
+        """Return the film, pivots and bent pads, (q, q); an unloaded pad's unknowns stand alone."""
         stiffness = stiffness_matrix(state)
         for number, frame in enumerate(self.frames):
             if number in self.unloaded:
@@ -216,7 +219,7 @@ class PadSearch:
         return stiffness
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
-        """Newton's next displacements, and how far the forces are off, relative to the load."""
+        """Return Newton's next displacements, and the forces' error over the load."""
         q, weights = state.displacement, self._weights
         missing = self.missing(state) * weights
         stiffness = self.stiffness(state) * weights[:, None] * weights[None, :]
@@ -250,7 +253,7 @@ class PadSearch:
         return following, off
 
     def _pressed(self, state: FilmState) -> float:
-        """Sum of the pads' loads [N], what forces are compared with where there is no load."""
+        """Return sum of the pads' loads [N], to compare forces with where there is no load."""
         load = np.abs(state.solution.pressure * state.operator.area)
         pressed = float(load[self.whole.mesh.region >= 0].sum())
         return max(self.whole.mesh.multiplicity * pressed, 1e-300)
@@ -389,7 +392,10 @@ class PadSearch:
             self.problem = replace(self.whole, geometry=geometry)
 
     def _levers(self, state: FilmState) -> Array:
-        """Moment of each pad over (R + t) times its pressure's integral; NaN without pressure."""
+        """Return moment of each pad over (R + t) times its pressure's integral.
+
+        NaN without pressure.
+        """
         load = state.solution.pressure * state.operator.area
         levers = np.full(len(self.frames), np.nan)
         for number, frame in enumerate(self.frames):
@@ -449,7 +455,10 @@ class PadSearch:
         return q
 
     def changed(self, q: Array) -> bool:
-        """Whether other pads than the ones taken as unloaded are so at `q`, as far as E_n tells."""
+        """Return whether other pads than the ones taken as unloaded are so at `q`.
+
+        As far as E_n tells.
+        """
         for number, frame in enumerate(self.frames):
             above = self._above(frame, q)
             if above == (number in self.unloaded) and not self._asks(frame, above):

@@ -113,7 +113,7 @@ class FilmState:
 def film_problem(
     case: Case, speed: float, bearing: Bearing, position: tuple[float, float]
 ) -> FilmProblem:
-    """Mesh and neighbourhoods of `bearing` (the case's, in the film frame) around `position`.
+    """Return mesh and neighbourhoods of the case's `bearing`, film frame, at `position`.
 
     With thermal expansion at supply temperature throughout.
     """

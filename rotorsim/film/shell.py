@@ -44,7 +44,10 @@ class _Line:
     built_in: tuple[bool, bool]
 
     def values(self, at: Array, derivative: int, slopes: bool) -> Array:
-        """Values of all functions, (points, functions); `slopes` vanish at built-in ends too."""
+        """Return values of all functions, (points, functions).
+
+        `slopes` vanish at built-in ends too.
+        """
         inner = np.linspace(self.first, self.last, self.spans + 1)
         knots = np.concatenate([[self.first] * 3, inner, [self.last] * 3])
         functions = BSpline(knots, np.eye(knots.size - 4), 3)
@@ -54,7 +57,7 @@ class _Line:
         return np.asarray(out[:, first : out.shape[1] - last])
 
     def rule(self) -> tuple[Array, Array]:
-        """Gauss points and weights over the interval."""
+        """Return gauss points and weights over the interval."""
         point, weight = np.polynomial.legendre.leggauss(4)
         edges = np.linspace(self.first, self.last, self.spans + 1)
         half = 0.5 * np.diff(edges)[:, None]
@@ -88,7 +91,7 @@ def shell_compliance(shell: Diaphragm, mesh: FilmMesh) -> tuple[NDArray[np.intp]
 def _stiffness(
     shell: Diaphragm, radius: float, around: _Line, across: _Line, widths: tuple[float, float]
 ) -> tuple[Any, int]:
-    """Stiffness matrix over u, v and w, and how many of the unknowns, the last, are w's."""
+    """Return stiffness matrix over u, v and w, and how many of the unknowns, the last, are w's."""
     (x, along), (eta, aside) = around.rule(), across.rule()
     width = np.repeat(np.interp(x, [0.0, around.last], widths), eta.size)
     slope = (widths[1] - widths[0]) / around.last
@@ -146,7 +149,7 @@ def _cell_means(
     shell: Diaphragm, mesh: FilmMesh, around: _Line, across: _Line, widths: tuple[float, float],
     mirrored: bool,
 ) -> tuple[NDArray[np.intp], Array]:  # fmt: skip
-    """Cells over the shell, and the mean of each function of w over each of them."""
+    """Return cells over the shell, and the mean of each function of w over each of them."""
     share = (np.arange(_SAMPLES) + 0.5) / _SAMPLES - 0.5
     theta = mesh.theta[:, None] + np.diff(mesh.theta_faces)[:, None] * share
     x = mesh.radius * ((theta - shell.start) % (2.0 * np.pi))

@@ -159,7 +159,10 @@ def solve_film(
 
 
 def _is_fed(case: Case) -> bool:
-    """Whether oil comes in anywhere: a film that conserves mass and loses oil at its ends must."""
+    """Return whether oil comes in anywhere.
+
+    A film that conserves mass and loses oil at its ends must.
+    """
     bearing = case.bearing
     begins = bearing.is_plain and case.film.inception is Inception.MAX_FILM
     conserves = rupture_condition(case.film.cavitation).conserves_mass

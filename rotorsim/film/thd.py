@@ -219,7 +219,7 @@ def _grown(
     walls: Walls,
     move: _Move | None,
 ) -> tuple[FilmProblem, Array]:
-    """Return problem and displacements in the clearance of `heat`.
+    """Return the problem and displacements in the clearance of `heat`.
 
     Where a search moves the journal, its eccentricity ratio stays: so it touches nothing.
     """

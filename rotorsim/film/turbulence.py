@@ -67,7 +67,7 @@ def layer_tables(layers: int) -> Array:
 
 
 def _moment(s: Array, low: Array, high: Array, n: int) -> Array:
-    """Return int z^n/(1 + eps(s z)) dz and its derivatives over ln(s), (4, nodes, layers).
+    """Return the int z^n/(1 + eps(s z)) dz and its derivatives over ln(s), (4, nodes, layers).
 
     By parts: D M = [z^(n + 1) phi] - (n + 1) M, phi = 1/(1 + eps).
     """
@@ -92,7 +92,7 @@ def _eddy(x: Array) -> Array:
 
 @cache
 def _sums() -> tuple[Array, Array]:
-    """Return equal steps of x and int_0^x t^n/(1 + eps) dt there, n = 0 to 2, (3, nodes)."""
+    """Return the equal steps of x and int_0^x t^n/(1 + eps) dt there, n = 0 to 2, (3, nodes)."""
     x = np.linspace(0.0, _LAST, _INTERVALS + 1)
     points, weights = np.polynomial.legendre.leggauss(8)
     inner = x[:-1, None] + 0.5 * x[1] * (1.0 + points)
@@ -151,7 +151,10 @@ def _fluidity(table, viscosity, logarithms, logarithm):
 
 @kernel
 def _stress(table, viscosity, logarithms, h, density, speed, guess):
-    """Shear stress of the Couette flow [Pa]: U = tau h F_0(tau), by Newton's method in ln(tau)."""
+    """Return shear stress of the Couette flow [Pa].
+
+    U = tau h F_0(tau), by Newton's method in ln(tau).
+    """
     stress = guess
     for _ in range(_MAX_STEPS):
         f0, tangent = _fluidity(

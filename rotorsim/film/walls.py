@@ -209,7 +209,7 @@ class _ConductingBush(_Wall):
         return _conducted(self.operator, temperature, flux, conductance, self.ambient)
 
     def bodies(self, temperature: Array, /) -> Array:
-        """Return mean temperature and gradient of the bush."""
+        """Return the mean temperature and gradient of the bush."""
         mean, gradient = self.operator.body(temperature - self.ambient)
         return np.array([[self.ambient + mean, gradient]])
 
@@ -266,7 +266,7 @@ class _ConductingPads(_Wall):
         return result
 
     def bodies(self, temperature: Array, /) -> Array:
-        """Return mean temperature and gradient of each pad."""
+        """Return the mean temperature and gradient of each pad."""
         values = [
             operator.body(temperature[own] - self.ambient)
             for own, operator in zip(self.columns, self.operators, strict=True)

@@ -55,7 +55,7 @@ class BandForm:
         return band
 
     def factors(self, band: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.intc]]:
-        """Return LU factors (3 width + 1, n) of LAPACK's ``gbtrf`` and its pivots."""
+        """Return the LU factors (3 width + 1, n) of LAPACK's ``gbtrf`` and its pivots."""
         from scipy.linalg import get_lapack_funcs
 
         (factor,) = get_lapack_funcs(("gbtrf",), (band,))

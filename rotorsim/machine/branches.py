@@ -144,7 +144,7 @@ class Modes:
         return sense, np.stack(size, axis=-1)
 
     def columns(self, keep: ArrayLike) -> Modes:
-        """Return some of the branches."""
+        """Return the some of the branches."""
         index = np.asarray(keep)
         return replace(
             self,

@@ -195,7 +195,7 @@ def design_pd(
     stiffness: float = 0.0,
     max_force: float = np.inf,
 ) -> StateFeedback:
-    """Least derivative gain with which every eigenvalue has a real part of `growth_rate` or less.
+    """Return the least derivative gain that brings every mode to `growth_rate` or less.
 
     mass : [kg]
     growth_rate : Wanted largest real part, zero or negative [1/s].

@@ -216,7 +216,10 @@ def lateral_checks(
 
 
 def _largest(speed: Array, values: Array, between: tuple[float, float]) -> float | None:
-    """Largest known value between two speeds, their ends interpolated; None: none is known."""
+    """Return largest known value between two speeds, their ends interpolated.
+
+    None: none is known.
+    """
     inside = (speed >= between[0]) & (speed <= between[1])
     known = np.isfinite(values)
     found = values[inside & known]
@@ -310,7 +313,7 @@ def unbalance_cases(
 
 
 def deflection(rotor: Rotor, shape: ComplexArray) -> Array:
-    """Deflection (n_nodes,) of a mode in the plane of its largest motion, at that instant."""
+    """Return a mode's deflection (n_nodes,) at its largest, in that plane."""
     motion = np.array([shape[[x, y]] for x, y in rotor.planes])
     largest = motion[np.abs(motion).max(axis=1).argmax()]
     return np.real(motion @ largest.conj()) / float(np.linalg.norm(largest))
@@ -323,7 +326,7 @@ def _mac(a: Array, b: Array) -> float:
 def _planes(
     rotor: Rotor, line: Array, loads: Mapping[int, float], speed: float, factor: float
 ) -> tuple[UnbalancePlane, ...]:
-    """Planes at the antinodes, each with the journal loads nearest to it or its overhung mass."""
+    """Return planes at the antinodes, with the nearest journal loads or overhung mass."""
     at = np.array([node.position for node in rotor.nodes])
     supports = sorted(loads, key=lambda node: at[node])
     ends = at[supports[0]], at[supports[-1]]

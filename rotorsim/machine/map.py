@@ -224,7 +224,7 @@ def _dataset(
 
 
 def _driven_rates(stiffness: Array, damping: Array, masses: Array) -> tuple[Array, Booleans]:
-    """Growth rates (..., n_mass) without modes below their own accuracy, and where there are such.
+    """Return growth rates (..., n_mass) without undamped modes, and where there are such.
 
     As `Eigenmodes.leading` has it: 0 where no mode is damped or driven.
     """

@@ -58,7 +58,10 @@ def modes(machine: Machine, speed: ArrayLike | None = None, count: int | None = 
 
 
 def machine_spectrum(machine: Machine, speeds: Array, count: int | None = None) -> MachineSpectrum:
-    """Modes of a machine at any of its speeds: all, or the lowest `count` pairs; see `modes`."""
+    """Return modes of a machine at any of its speeds: all, or the lowest `count` pairs.
+
+    See `modes`.
+    """
     if count is not None:
         return MachineSpectrum(machine, count)
     top = float(np.max(np.abs(speeds), initial=0.0))

@@ -87,7 +87,7 @@ def _riccati(a: Array, b: Array, q: Array, r: Array, word: str) -> Array:
 def pd_of_sensors(
     system: control.StateSpace, corner: float, max_force: float = np.inf
 ) -> OutputFeedback:
-    """Return PD from each sensor to the actuator of the same number, of least growth rate.
+    """Return the PD from each sensor to the actuator of the same number, of least growth rate.
 
     system : Small; as many forces as displacements.
     corner : Where the derivative ends: kp + kd s/(1 + s/corner) [rad/s].
@@ -148,7 +148,9 @@ def _slow(system: control.StateSpace) -> float:
 
 @on_one_blas_thread
 def modulus_margin(system: control.StateSpace, feedback: OutputFeedback) -> float:
-    """Least singular value of 1 + loop at the actuators over frequency: distance to instability.
+    """Return least singular value of 1 + loop at the actuators over frequency.
+
+    Distance to instability.
 
     Of simultaneous changes of all loops; it says nothing where the closed loop is unstable.
     """

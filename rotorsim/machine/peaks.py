@@ -171,7 +171,10 @@ def _peak(amplitude: Callable[[float], float], speeds: Array, values: Array, i: 
 def _half_power(
     amplitude: Callable[[float], float], speeds: Array, values: Array, top: Peak, side: int
 ) -> tuple[float | None, str]:
-    """Nearest speed on one side where the amplitude falls to 0.707 of the peak, or why not."""
+    """Return nearest speed on one side where the amplitude falls to 0.707 of the peak.
+
+    Or why not.
+    """
     from scipy.optimize import brentq
 
     level = _HALF_POWER * top.amplitude

@@ -157,7 +157,9 @@ def _quadratic(p: complex, q: complex) -> tuple[complex, complex]:
 def _polish(
     x: float, y: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float]:
-    """Newton on M(s)^2 - N(s) from s = x + i y; the root and an estimate of its relative error.
+    """Return Newton on M(s)^2 - N(s) from s = x + i y.
+
+    The root and an estimate of its relative error.
 
     Real arithmetic and the sum norm: half the time of complex division and hypot.
     """
@@ -194,7 +196,10 @@ def _conjugate_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float,
 ) -> float:  # fmt: skip
-    """Largest real part where the factors are M + t -+ i (l1 s + l0), each other's conjugates."""
+    """Return largest real part where the factors are M + t -+ i (l1 s + l0).
+
+    Each other's conjugates.
+    """
     r1, r2 = _quadratic(complex(alpha, -l1), complex(beta + t, -l0))
     x1, y1, d1 = _polish(r1.real, r1.imag, alpha, beta, n2, n1, n0)
     x2, y2, d2 = _polish(r2.real, r2.imag, alpha, beta, n2, n1, n0)
@@ -209,7 +214,10 @@ def _conjugate_factors(
 def _pair(
     p: float, q: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float, float]:
-    """Polished roots of one real factor: larger real part, sum, product, worst relative error."""
+    """Return polished roots of one real factor.
+
+    Larger real part, sum, product, worst relative error.
+    """
     half = 0.5 * p
     discriminant = half * half - q
     if discriminant < 0.0:
@@ -319,7 +327,7 @@ def _fill_row(k: np.ndarray, c: np.ndarray, mass: np.ndarray, rate: np.ndarray) 
 def _fill_rates(
     stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray, rate: np.ndarray
 ) -> None:
-    """Growth rates of (P, 4) stiffness and damping x (Q,) masses into the (P, Q) array `rate`."""
+    """Write growth rates of (P, 4) stiffness and damping x (Q,) masses to `rate` (P, Q)."""
     for i in range(stiffness.shape[0]):
         _fill_row(stiffness[i], damping[i], mass, rate[i])
 
@@ -328,6 +336,6 @@ def _fill_rates(
 def _fill_rates_pairwise(
     stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray, rate: np.ndarray
 ) -> None:
-    """Growth rates of (P, 4) stiffness and damping with (P,) masses into the (P,) array `rate`."""
+    """Write growth rates of (P, 4) stiffness and damping with (P,) masses to `rate` (P,)."""
     for i in range(stiffness.shape[0]):
         _fill_row(stiffness[i], damping[i], mass[i : i + 1], rate[i : i + 1])

@@ -39,7 +39,7 @@ class UnbalanceResponse:
         return self.at(node) @ np.array([np.cos(angle), np.sin(angle)])
 
     def major_axis(self, node: int | str) -> Array:
-        """Return half the major axis (n,) of a node's elliptical orbit [m]."""
+        """Return the half the major axis (n,) of a node's elliptical orbit [m]."""
         x, y = self.at(node).T
         return 0.5 * (np.abs(x + 1j * y) + np.abs(np.conj(x) + 1j * np.conj(y)))
 

@@ -147,7 +147,9 @@ def all_eigenmodes(a: Array, unknowns: int) -> Eigenmodes:
 
 
 def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes | None:
-    """Lowest modes of a machine: 2 `count` or a few more, ascending in modulus; None: not known.
+    """Return lowest modes of a machine: 2 `count` or a few more, ascending in modulus.
+
+    None: not known.
 
     machine : Unknowns without mass or damping are allowed.
     count : Pairs of eigenvalues.
@@ -304,7 +306,9 @@ def _start(size: int) -> Array:
 
 
 def _at_their_frequencies(machine: Machine, speed: float, start: Eigenmodes) -> Eigenmodes:
-    """Modes with the supports' laws over frequency, each by Newton from that of the matrices.
+    """Return modes with the supports' laws over frequency.
+
+    Each by Newton from that of the matrices.
 
     A mode from which Newton does not converge is left out.
     """

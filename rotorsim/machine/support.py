@@ -60,12 +60,12 @@ class Support(ABC):
         """
 
     def dynamic_stiffness(self, s: complex, speed: float) -> ComplexArray:
-        """Force per displacement (m, m) [N/m] of a motion exp(s t) at a shaft speed [rad/s]."""
+        """Return force per displacement (m, m) [N/m] of a motion exp(s t) at a speed [rad/s]."""
         k, c, m = self.matrices(speed)
         return np.asarray(k + s * c + s * s * m, dtype=complex)
 
     def force(self, q: ArrayLike, v: ArrayLike, speed: float) -> Array:
-        """Force (m,) [N] of the support at displacements and velocities from equilibrium (m,)."""
+        """Return force (m,) [N] at displacements and velocities (m,) from equilibrium."""
         k, c, _ = self.matrices(speed)
         return -(k @ np.asarray(q, dtype=float) + c @ np.asarray(v, dtype=float))
 

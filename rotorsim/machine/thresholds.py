@@ -174,7 +174,7 @@ def _refined_crossing(at: Spectrum, branches: Modes, i: int, k: int, order: floa
     ends = branches.eigenvalues[[i, i + 1], k], branches.shapes[[i, i + 1], k]
 
     def mode(speed: float) -> Eigenmodes:
-        """Return that mode between the two points: nearest in eigenvalue and shape."""
+        """Return the that mode between the two points: nearest in eigenvalue and shape."""
         t = (speed - low) / (high - low)
         state = at(speed)
         assert state is not None  # between two speeds at which it is known

@@ -139,7 +139,7 @@ class _Follower:
 
 
 def _likeness(old: Eigenmodes, i: int, shape: ComplexArray) -> float:
-    """Return MAC of a shape and the space of the modes that share eigenvalue i.
+    """Return the MAC of a shape and the space of the modes that share eigenvalue i.
 
     The shapes of a multiple eigenvalue (a free rotor, an isotropic one at rest) are any basis.
     """

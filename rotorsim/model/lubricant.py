@@ -110,7 +110,9 @@ class WaltherViscosity:
     def from_iso_vg(
         cls, grade: float, density: float, viscosity_index: float = 100.0
     ) -> WaltherViscosity:
-        """Oil of an ISO 3448 grade: `grade` mm2/s at 40 degC, at 100 degC from the viscosity index.
+        """Return oil of an ISO 3448 grade.
+
+        `grade` mm2/s at 40 degC, at 100 degC from the viscosity index.
 
         The value at 100 degC solves ISO 2909 / ASTM D2270 procedure A, VI = 100 (L - U)/(L - H),
         with L and H its quadratic fits in the kinematic viscosity at 100 degC.
@@ -155,7 +157,7 @@ _D2270 = (
 
 
 def _kinematic_at_100(nu40: float, viscosity_index: float) -> float:
-    """Kinematic viscosity at 100 degC [mm2/s] of an oil of `nu40` mm2/s and the given index."""
+    """Return kinematic viscosity at 100 degC [mm2/s] from `nu40` [mm2/s] and the index."""
     if not (nu40 > 5.0 and math.isfinite(nu40)):
         raise InputError("must be above 5 (mm2/s at 40 °C)", key="lubricant.iso_vg", value=nu40)
     if not 0.0 <= viscosity_index <= 100.0:

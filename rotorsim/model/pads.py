@@ -74,11 +74,11 @@ class SpringPivot(Pivot):
         check(self, "pivot")
 
     def force(self, deflection: float) -> float:
-        """Return stiffness times deflection; 0 where the pad has lifted off."""
+        """Return the stiffness times deflection; 0 where the pad has lifted off."""
         return self.stiffness * max(deflection, 0.0)
 
     def deflection(self, force: float) -> float:
-        """Return force over stiffness."""
+        """Return the force over stiffness."""
         return force / self.stiffness
 
     def stiffness_at(self, deflection: float) -> float:

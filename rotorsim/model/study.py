@@ -39,7 +39,7 @@ class _RangesEntry(Leaf):
 
 
 def _ranges(name: str, given: Any) -> list[Range]:
-    """Ranges of one key; of a bare table, in TOML the same as a dotted key, those of its keys."""
+    """Return ranges of one key, or those of a bare table's keys (a dotted key in TOML)."""
     if isinstance(given, Mapping) and "low" not in given and "high" not in given:
         return [r for key, inner in given.items() for r in _ranges(f"{name}.{key}", inner)]
     table = given

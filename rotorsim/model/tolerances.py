@@ -44,7 +44,7 @@ class Spread:
     distribution: Distribution | None = None
 
     def absolute(self, nominal: float) -> float:
-        """Spread in the input's own unit."""
+        """Return the spread in the input's own unit."""
         return self.value * abs(nominal) if self.relative else self.value
 
 

@@ -105,7 +105,9 @@ def steady_part(orbit: Orbit) -> Orbit | None:
 
 
 def once_per_turn(orbit: Orbit) -> Array | None:
-    """Positions at whole turns of the shaft in the steady part (Poincare points), (k, 2) [m].
+    """Return positions at whole turns of the shaft in the steady part (Poincare points).
+
+    Shape (k, 2) [m].
 
     None where the run does not end in a steady motion.
     """
@@ -127,7 +129,10 @@ def _swing(orbit: Orbit) -> float:
 
 
 def _middle(orbit: Orbit) -> tuple[complex, ComplexArray, Array]:
-    """Mean of z = x + i y, z, and the weights: smooth, for windows hold no whole whirl cycles."""
+    """Return mean of z = x + i y, z, and the weights.
+
+    Smooth, for windows hold no whole whirl cycles.
+    """
     count = orbit.t.size
     weights = (1.0 - np.cos(2.0 * np.pi * (np.arange(count) + 0.5) / count)) / count
     z = orbit.x + 1j * orbit.y
@@ -156,7 +161,10 @@ def _rest_from(orbit: Orbit) -> int:
 
 
 def _steady_from(orbit: Orbit, amplitude: float, known: int) -> int:
-    """First sample of the stretch before `known` whose blocks all have that amplitude (to 5 %)."""
+    """Return first sample of the stretch before `known` whose blocks all have that amplitude.
+
+    To 5 %.
+    """
     block = _BLOCK * orbit.samples_per_revolution
     start = known
     while start >= block:
@@ -255,7 +263,9 @@ def _initial_growth(orbit: Orbit) -> Growth | None:
 
 
 def steady_spectrum(orbit: Orbit) -> Spectrum | None:
-    """Spectrum of a run at constant speed: of its steady part, of all of it where it has none.
+    """Return spectrum of a run at constant speed.
+
+    Of its steady part, of all of it where it has none.
 
     None for a run that comes to rest, through the speeds, or too short for a spectrum.
     """
@@ -268,7 +278,10 @@ def steady_spectrum(orbit: Orbit) -> Spectrum | None:
 
 
 def speed_cascade(orbit: Orbit) -> Cascade | None:
-    """Cascade of a run through the speeds; None at constant speed, or where it is too short."""
+    """Return cascade of a run through the speeds.
+
+    None at constant speed, or where it is too short.
+    """
     if orbit.constant_speed or not orbit.t.size:
         return None
     short, long = _CASCADE_BLOCKS

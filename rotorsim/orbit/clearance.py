@@ -89,7 +89,10 @@ def minimum_film(bearing: Bearing, x: Array, y: Array) -> Array:
 
 
 def _pivots(bearing: Bearing) -> tuple[Array, Array]:
-    """Directions (p, 2) of the pivots, and assembled clearances there [m]; rigid ones, if any."""
+    """Return directions (p, 2) of the pivots, and assembled clearances there [m].
+
+    Rigid ones, if any.
+    """
     pads = [pad for pad in bearing.pads if pad.pivot.is_rigid] or bearing.pads
     angles = np.array([pad.pivot_angle for pad in pads])
     clearances = [(1.0 - bearing.preload_of(pad)) * bearing.clearance_of(pad) for pad in pads]

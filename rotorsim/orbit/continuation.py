@@ -149,7 +149,10 @@ class _Balance:
         return matrix.reshape(size, size), right.ravel()
 
     def motion(self, c: Array, frequency: float) -> tuple[Array, Array]:
-        """Positions and velocities (m, n) of all unknowns that films touch, the others zero."""
+        """Return positions and velocities (m, n) of all unknowns that films touch.
+
+        The others zero.
+        """
         waves = c.reshape(self.count, -1)
         q, v = np.zeros((2, _MOMENTS, self.system.size))
         q[:, self.held] = self.basis @ waves
@@ -197,7 +200,10 @@ class _Balance:
         return np.array(sizes), least
 
     def multipliers(self, c: Array, frequency: float, speed: float) -> ComplexArray:
-        """Floquet's multipliers of the whole machine, the one nearest to 1 of a free cycle less."""
+        """Return Floquet's multipliers of the whole machine.
+
+        The one nearest to 1 of a free cycle less.
+        """
         whole, _ = self.plains(speed)
         n, waves = self.system.size, c.reshape(self.count, -1)
         period = 2.0 * np.pi / frequency
@@ -345,7 +351,7 @@ def _follow(
     s = balance.held.size
 
     def answer(z: Array, reference: Array) -> tuple[Array, Array]:
-        """Scaled residual with the condition on the phase, and its Jacobian but the last row."""
+        """Return scaled residual with the phase's condition, and its Jacobian but one row."""
         c, frequency, speed = z[:-2] * clearance, z[-2] * unit, z[-1] * unit
         off, by_c, by_w = balance.residual(c, frequency, speed)
         step = 1e-6 * speed

@@ -148,7 +148,7 @@ def _orbit_rows(said: Mapping[str, Any]) -> list[Row]:
 
 
 def ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
-    """Return half axes in the unit shown and the sense; a dash without an ellipse."""
+    """Return the half axes in the unit shown and the sense; a dash without an ellipse."""
     if ellipse is None:
         return "-"
     axes = (_SMALL.text(ellipse[key], 3) for key in ("semi_major", "semi_minor"))

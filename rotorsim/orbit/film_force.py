@@ -52,7 +52,9 @@ _FIELDS = ("f0", "f2", "f2_axial", "g", "pressure_share", "shear_share")
 
 
 def field_on(solution: FilmSolution, other: FilmSolution, values: Array) -> Array:
-    """Field (n, m, ...) of another speed's film on this one's mesh: at the same place of the bush.
+    """Return field (n, m, ...) of another speed's film on this one's mesh.
+
+    At the same place of the bush.
 
     Both meshes have the same cells along the axis; around they may be graded and turned otherwise.
     """
@@ -207,7 +209,10 @@ class SolvedFilmForce:
         return self._turn @ state.force - held, stiffness + np.diag(tangent), damping
 
     def synchronous(self, speed: float) -> Coefficients:
-        """K and C of the journal whose pads move with it at the shaft's frequency, at rest."""
+        """Return K and C of the journal whose pads move with it at the shaft's frequency.
+
+        At rest.
+        """
         rest = self._turn @ self.rest
         _, stiffness, damping = self.linear(rest, np.zeros_like(rest), speed)
         law = stiffness + 1j * speed * damping
@@ -228,7 +233,10 @@ class SolvedFilmForce:
         return pad_springs(self.bearing, q)
 
     def film(self, q: Array, v: Array, speed: float) -> FilmState:
-        """Film at these displacements and rates, in the problem's frame; errors as `forces`."""
+        """Return film at these displacements and rates, in the problem's frame.
+
+        Errors as `forces`.
+        """
         problem = self.problem
         if speed != problem.speed:
             problem = replace(problem, speed=speed)
@@ -282,13 +290,13 @@ class ActuatedSolvedFilm(SolvedFilmForce):
         )
 
     def forces(self, q: Array, v: Array, speed: float) -> Array:
-        """Return those of the film alone plus the actuator's force on the journal."""
+        """Return the those of the film alone plus the actuator's force on the journal."""
         both = super().forces(q, v, speed)
         both[:2] += self.actuator_force(*q[:2], *v[:2])
         return both
 
     def linear(self, q: Array, v: Array, speed: float) -> tuple[Array, Array, Array]:
-        """Return those of film and actuator together; a saturated axis has no stiffness."""
+        """Return the those of film and actuator together; a saturated axis has no stiffness."""
         assert self.feedback is not None
         force, stiffness, damping = super().linear(q, v, speed)
         own = self.actuator_force(*q[:2], *v[:2])
@@ -300,7 +308,7 @@ class ActuatedSolvedFilm(SolvedFilmForce):
 
 
 def can_be_mapped(case: Case) -> bool:
-    """Whether eccentricity ratio and direction of squeeze alone decide this film (`film_map`)."""
+    """Return whether eccentricity ratio and direction of squeeze decide this film."""
     return (
         case.bearing.is_plain
         and case.bearing.is_symmetric
@@ -381,7 +389,10 @@ def loaded_film(
 
 
 def other_films(case: Case, load: float, speeds: Sequence[float]) -> list[FilmSolution]:
-    """Films under the same load [N] at other speeds [rad/s]; those that cannot be solved lack."""
+    """Return films under the same load [N] at other speeds [rad/s].
+
+    Those that cannot be solved lack.
+    """
     found = []
     for speed in speeds:
         with suppress(InputError):

@@ -128,7 +128,10 @@ def map_path(
 
 @lru_cache(maxsize=1)
 def sources_digest() -> str:
-    """SHA-256 of the modules that a map's numbers come from: the film, the model and the map."""
+    """Return SHA-256 of the modules that a map's numbers come from.
+
+    The film, the model and the map.
+    """
     package = Path(__file__).parents[1]
     files = [*package.glob("film/**/*.py"), *package.glob("model/*.py")]
     files += [package / "orbit" / name for name in ("film_map.py", "force_map.py", "kernels.py")]

@@ -126,7 +126,7 @@ class LinearForce:
         return float(fx), float(fy)
 
     def compiled(self, lowest_speed: float, highest_speed: float) -> CompiledForce:
-        """Spline over the speeds of the run."""
+        """Return the spline over the speeds of the run."""
         if highest_speed == lowest_speed:
             table = np.zeros((1, 4, 10))
             table[0, 0] = self.at(lowest_speed)

@@ -244,7 +244,10 @@ def film_force_series(kind: int, motion: Array, numbers: Array, table: Array) ->
 
 @compiled()
 def shaft(t: float, knots: Array) -> tuple[float, float, float]:
-    """Angle, speed and acceleration of the shaft; knots: time, speed, angle, acceleration."""
+    """Return angle, speed and acceleration of the shaft.
+
+    Knots: time, speed, angle, acceleration.
+    """
     i = knots.shape[0] - 2
     while i > 0 and t < knots[i, 0]:
         i -= 1

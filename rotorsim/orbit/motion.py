@@ -195,7 +195,7 @@ class Motion:
         return self.q @ system.basis[rows].T + system.offset[rows]
 
     def link_motion(self, link: Link) -> Array:
-        """Position, velocity, effective speed (m, 5) of a film's inner body in its housing."""
+        """Return position, velocity, effective speed (m, 5) of the inner body in its housing."""
         return link.motion(self.q, self.v, self.speed)
 
     def link_force(self, link: Link) -> Array:
@@ -487,7 +487,7 @@ class _Exact:
         self.made: dict[bytes, tuple[Array, Array]] = {}
 
     def _generator(self, middle: float) -> tuple[Array, list[float]]:
-        """Matrix of motion and oscillators that act at a time, and the oscillators' frequencies."""
+        """Return matrix of motion and acting oscillators, and the oscillators' frequencies."""
         system, w = self.problem.system, self.speed
         n = system.size
         stiffness, damping = derivatives(np.zeros(n), np.zeros(n), w, system.scale,
@@ -589,7 +589,9 @@ class _Scipy:
         return np.concatenate([v, free + alpha * coupled, [w, alpha]])
 
     def jacobian(self, t: float, s: Array) -> Array:
-        """Derivatives of the rates at a prescribed speed: films by differences, the rest as it is.
+        """Return derivatives of the rates at a prescribed speed.
+
+        Films by differences, the rest as it is.
 
         LSODA's own would solve each film once for every unknown of the rotor.
         """

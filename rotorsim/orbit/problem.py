@@ -111,7 +111,10 @@ class SpeedSchedule:
         return piece[..., 2] + since * (piece[..., 1] + 0.5 * piece[..., 3] * since)
 
     def time_at(self, angle: float | Array) -> Array:
-        """Time [s] at which the shaft has turned by `angle` [rad]: the inverse of `angle_at`."""
+        """Return time [s] at which the shaft has turned by `angle` [rad].
+
+        The inverse of `angle_at`.
+        """
         angle = np.asarray(angle, dtype=float)
         knots = self.knots
         index = np.searchsorted(knots[:, 2], angle, side="right") - 1

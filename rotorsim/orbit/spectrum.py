@@ -180,7 +180,10 @@ def whirl_frequency_ratio(orbit: Orbit) -> float | None:
 
 
 def orbit_ellipse(orbit: Orbit, order: float = 1.0) -> Ellipse:
-    """Ellipse at one order (1: synchronous), by weighted least squares together with the mean."""
+    """Return ellipse at one order (1.
+
+    Synchronous), by weighted least squares together with the mean.
+    """
     if order <= 0.0:
         raise InputError("must be above 0", key="order", value=order)
     _, z, weights = _window(orbit)

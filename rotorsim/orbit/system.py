@@ -89,7 +89,7 @@ class Link:
         return self.force if isinstance(self.force, GeneralisedForce) else None
 
     def at(self, q: Array, v: Array, speed: float) -> tuple[float, ...]:
-        """Return position, velocity and speed that the force is asked for, of one state."""
+        """Return the position, velocity and speed that the force is asked for, of one state."""
         (i, j), (k, m) = self.inner, self.outer
         x, y, vx, vy = float(q[i]), float(q[j]), float(v[i]), float(v[j])
         if k >= 0:
@@ -283,7 +283,10 @@ class MotionSystem:
     def _pull(
         self, link: Link, q: Array, v: Array, speed: float, slopes: bool = False
     ) -> tuple[Array, ...]:
-        """Forces of a solved link on body and pads; with `slopes` stiffness and damping too."""
+        """Return forces of a solved link on body and pads.
+
+        With `slopes` stiffness and damping too.
+        """
         x, y, vx, vy, turning = link.at(q, v, speed)
         pads = list(link.pads)
         here, rate = np.array([x, y, *q[pads]]), np.array([vx, vy, *v[pads]])
@@ -460,7 +463,10 @@ def _add(force: Array, link: NDArray[np.int64], fx: float, fy: float, torque: fl
 
 @compiled()
 def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[Array, Array]:
-    """Stiffness and damping matrix (n, n) of all forces at a motion: minus their derivatives."""
+    """Return stiffness and damping matrix (n, n) of all forces at a motion.
+
+    Minus their derivatives.
+    """
     stiffness, damping = p.stiffness.copy(), p.damping.copy()
     if p.gyroscopic.shape[0] > 0:
         stiffness += w * p.circulatory

@@ -173,7 +173,7 @@ class Beam:
         return inner, outer
 
     def properties(self, z: Array) -> tuple[Array, Array, Array, Array]:
-        """Bending stiffness, shear stiffness, mass and rotary inertia per length at z (n,) [m].
+        """Return EI, kGA, mass and rotary inertia per length at z (n,) [m].
 
         Returns bending, shear, mass, inertia : (n,) arrays. E I [N m^2], kappa G A [N], rho A
             [kg/m], rho I [kg m]; sums over the layers.
@@ -202,7 +202,10 @@ class Beam:
 
 
 def _shear_coefficient(radius_ratio: float | Array, poisson_ratio: float) -> float | Array:
-    """Cowper's shear coefficient of a (hollow) circle; `radius_ratio` is inner over outer."""
+    """Return Cowper's shear coefficient of a (hollow) circle.
+
+    `radius_ratio` is inner over outer.
+    """
     m2 = np.square(radius_ratio)
     first = (1.0 + m2) ** 2
     return (
@@ -379,7 +382,7 @@ def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: in
 
 
 def buckling_load(beam: Beam, supports: Sequence[float]) -> float:
-    """Compressive force [N] at which the shaft buckles between supports that do not give way.
+    """Return the force [N] at which the shaft buckles between supports that do not yield.
 
     supports : Places [m]. Infinite with fewer than two, or where a joint lets the shaft go.
     """
@@ -446,7 +449,10 @@ def _merged(places: Sequence[float], length: float) -> list[float]:
 
 
 def with_unbalance(rotor: Rotor, planes: Sequence[tuple[float, float, float]]) -> Rotor:
-    """Rotor with unbalances at places: (position [m], mass times radius [kg m], phase [rad])."""
+    """Return rotor with unbalances at places.
+
+    (position [m], mass times radius [kg m], phase [rad]).
+    """
     positions = np.array([node.position for node in rotor.nodes])
     unbalance = np.array(rotor.unbalance)
     for at, amount, phase in planes:

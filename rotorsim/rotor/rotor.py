@@ -98,7 +98,10 @@ class Rotor:
         ) and all(np.array_equal(getattr(self, n), getattr(other, n)) for n in arrays)  # fmt: skip
 
     def _label(self, name: str) -> str:
-        """How a message calls a matrix: by the file's name for it where it is from a file."""
+        """Return how a message calls a matrix.
+
+        By the file's name for it where it is from a file.
+        """
         in_file = {
             "mass": "M", "damping": "D or C", "gyroscopic": "G", "stiffness": "K",
             "circulatory": "H",

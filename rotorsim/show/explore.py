@@ -122,7 +122,7 @@ def _thresholds(table: Any, rotor: Any) -> list[tuple[str, str]]:
 
 
 def _growth(table: Any, rotor: Any, here: float) -> Any:
-    """Figure of the growth rate over speed, for a rotor that is not rigid."""
+    """Return the figure of the growth rate over speed, for a rotor that is not rigid."""
     from ..study.stability import stability_curves
     from .figures.style import model_label, model_style, new_axes
 
@@ -216,7 +216,7 @@ class _Page:
         context.client.on_disconnect(lambda: [task.cancel() for task in self.tasks])
 
     def fields(self) -> None:
-        """A slider and a number for each entry, in the units shown."""
+        """Return a slider and a number for each entry, in the units shown."""
         from nicegui import ui
 
         self.panel.clear()
@@ -255,7 +255,7 @@ class _Page:
         self.moved.set()
 
     def text(self) -> str:
-        """Text of the scenario as it stands."""
+        """Return the text of the scenario as it stands."""
         changed = {knob: self.values[knob.path] for knob in self.knobs
                    if self.values[knob.path] != knob.value or knob.path[-1] in _ALWAYS}  # fmt: skip
         return varied(self.scenario, changed).text

@@ -147,7 +147,10 @@ def orbit_figures(
 
 
 def _map_planes(results: Results) -> list[xr.Dataset]:
-    """Stability maps over speed and mass, one for each clearance; none for a single speed."""
+    """Return stability maps over speed and mass, one for each clearance.
+
+    None for a single speed.
+    """
     if results.chart is None:
         return []
     dataset = results.chart.dataset
@@ -159,12 +162,12 @@ def _map_planes(results: Results) -> list[xr.Dataset]:
 
 
 def _bearing_of(results: Results, clearance: float) -> Bearing:
-    """The scenario's bearing with one of its clearances [m], load frame."""
+    """Return the scenario's bearing with one of its clearances [m], load frame."""
     return results.scenario.case(clearance, results.scenario.thermal_models[0]).bearing
 
 
 def _marks(results: Results, clearance: float) -> dict[str, tuple[float, float]]:
-    """The rotor on a map: at the highest speed, for which verdicts are given, and its orbits'."""
+    """Return the rotor on a map: at the verdicts' speed, the highest, and its orbits'."""
     mass, settings = results.rotor_mass, results.scenario.orbit
     if mass is None:
         return {}
@@ -185,7 +188,7 @@ def _write_recording_of(results: Results, path: Path) -> Path:
 
 
 def _recording_contents(results: Results) -> RecordingContents:
-    """Everything that the recording shows."""
+    """Return everything that the recording shows."""
     from .recording import RecordingContents
 
     kinds = {orbit.kind for orbit in results.orbits}
@@ -254,7 +257,7 @@ def record_scenario(
 
 
 def _surrounding_table(scenario: Scenario, workers: int | None = None) -> CoefficientTable:
-    """Table of the orbit's clearance at up to `_SURROUNDING_SPEEDS` of the scenario's speeds."""
+    """Return table of the orbit's clearance at up to `_SURROUNDING_SPEEDS` speeds."""
     from ..study.sweep import tabulate
 
     speeds, settings = scenario.speeds, orbit_settings(scenario)[0]
@@ -272,7 +275,7 @@ _HEATING = ("load", "friction_force", "max_pressure", "max_temperature", "critic
 
 
 def _markdown_summary(results: Results) -> str:
-    """The summary of the main job as Markdown, for the recording."""
+    """Return the summary of the main job as Markdown, for the recording."""
     facts = summary(results, {})
     counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
     lines = [*_conclusion(facts), *([f"Film points: {counted}.", ""] if counted else [])]
@@ -320,7 +323,9 @@ def _conclusion(facts: Mapping[str, Any]) -> list[str]:
 
 
 def _orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None = None) -> str:
-    """What each run shows, how it ended, and what its film force takes for granted, as Markdown.
+    """Return what each run shows, how it ended, and what its film force takes for granted.
+
+    As Markdown.
 
     `rows` are what `describe_orbit` says of the orbits, where that is known already.
     """
@@ -339,7 +344,7 @@ def _orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None 
 
 
 def _seen(row: Mapping[str, Any]) -> list[str]:
-    """What an orbit shows in numbers, a line each."""
+    """Return what an orbit shows in numbers, a line each."""
     facts = []
     if row["growth_rate"] is not None:
         word = "grow" if row["growth_rate"] > 0.0 else "decay"
@@ -359,7 +364,7 @@ def _seen(row: Mapping[str, Any]) -> list[str]:
 
 
 def plane_figures(plane: Plane, title: str = "") -> Iterator[tuple[str, Figure]]:
-    """Map of a plane: stable, unstable, and what only heating makes unstable."""
+    """Return the map of a plane: stable, unstable, and what only heating makes unstable."""
     from .figures import stability_map
 
     heading = "\n".join(text for text in (title, held_text(plane.held)) if text)
@@ -368,14 +373,17 @@ def plane_figures(plane: Plane, title: str = "") -> Iterator[tuple[str, Figure]]
 
 
 def tolerance_figures(study: ToleranceStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
-    """Histograms of threshold speed and critical mass, and what matters."""
+    """Return histograms of threshold speed and critical mass, and what matters."""
     from .figures import tolerance_histograms
 
     yield "tolerances", tolerance_histograms(study, title)
 
 
 def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tuple[str, Figure]]:
-    """One diagram for each clearance (and further dimension), all its thermal models in it."""
+    """Return one diagram for each clearance (and further dimension).
+
+    All its thermal models in it.
+    """
     from .figures import campbell_diagram
 
     groups: dict[tuple, list[Campbell]] = {}
@@ -390,7 +398,7 @@ def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tu
 
 
 def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
-    """Root locus over the loop gain, Bode diagram of the receptance, and the runs in time."""
+    """Return root locus, Bode diagram of the receptance, and the runs in time."""
     from ..machine.control import receptance
     from ..machine.spectrum import MatrixSpectrum
     from ..machine.tracking import track_modes
@@ -422,7 +430,7 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
 def machine_control_figures(
     study: MachineControlStudy, title: str = ""
 ) -> Iterator[tuple[str, Figure]]:
-    """Receptance from actuator to sensor, whole and reduced, and the runs in time."""
+    """Return the receptance from actuator to sensor, whole and reduced, and the runs in time."""
     from ..machine.reduction import response
     from .figures import bode_plot
     from .figures.machine import control_traces

@@ -122,7 +122,7 @@ def write_motion(
 
 
 def _motion_summary(motion: Motion) -> str:
-    """Outcome in Markdown."""
+    """Return the outcome in Markdown."""
     document = motion_document(motion)
     lines = [
         f"{document['kind'].replace('_', ' ')}, {document['speed'][0] * RPM:.0f} to "

@@ -114,7 +114,7 @@ def _existing(path: str | Path) -> Path:
 
 
 def viewer_program() -> Path | None:
-    """Path of the wheel's own viewer, or None where the wheel has none."""
+    """Return the path of the wheel's own viewer, or None where the wheel has none."""
     try:
         import rerun_cli
     except ImportError:
@@ -125,7 +125,7 @@ def viewer_program() -> Path | None:
 
 
 def has_display() -> bool:
-    """Whether a window can be opened."""
+    """Return whether a window can be opened."""
     if not sys.platform.startswith("linux"):
         return True
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))

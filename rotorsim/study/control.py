@@ -150,7 +150,10 @@ def study_control(
 def _at_rest(
     film: BearingForce, load: tuple[float, float], speed: float
 ) -> tuple[tuple[float, float], Coefficients]:
-    """Where the journal rests [m], and what it feels there; of pads at the shaft's frequency."""
+    """Return where the journal rests [m], and what it feels there.
+
+    Of pads at the shaft's frequency.
+    """
     from ..orbit import LinearForce
     from ..orbit.film_force import SolvedFilmForce
     from ..orbit.forces import find_equilibrium, linearize_force
@@ -207,7 +210,7 @@ def _design_feedback(
     radial_clearance: float,
     load: float | None,
 ) -> StateFeedback:
-    """Feedback for a rigid rotor [kg] on its linearised film, at the coefficients' speed.
+    """Return feedback for a rigid rotor [kg] on its linearised film, at the coefficients' speed.
 
     mass, radial_clearance : Per bearing [kg], [m].
     load : The static one [N]: a tenth of it is the force that counts as large where none is given.
@@ -232,7 +235,7 @@ def _design_feedback(
 def with_actuator(
     problem: OrbitProblem, settings: ActuatorSettings, mass: float, load: float | None
 ) -> OrbitProblem:
-    """The problem with an actuator beside its film, at constant speed.
+    """Return the problem with an actuator beside its film, at constant speed.
 
     Raises InputError: The speed changes, or as `_design_feedback`.
     """

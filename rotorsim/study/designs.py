@@ -65,7 +65,7 @@ class Variable:
     logarithmic: bool
 
     def values(self, unit_interval: Array) -> Array:
-        """Values for numbers from 0 to 1."""
+        """Return values for numbers from 0 to 1."""
         if self.logarithmic:
             return np.asarray(self.low * (self.high / self.low) ** unit_interval)
         return self.low + (self.high - self.low) * unit_interval
@@ -110,7 +110,7 @@ class Study:
 
 
 def undominated(goals: Array) -> Booleans:
-    """Whether no other row is as low in every column and lower in one, (n,)."""
+    """Return whether no other row is as low in every column and lower in one, (n,)."""
     order = np.lexsort(goals.T[::-1])
     kept = np.zeros(len(goals), dtype=bool)
     front = np.empty((0, goals.shape[1]))
@@ -203,7 +203,7 @@ def _number(end: Any, kind: str | None) -> float:
 def _batches(
     variables: Sequence[Variable], seed: int, count: int, there: frozenset[int]
 ) -> Iterator[list[tuple[int, tuple[float, ...]]]]:
-    """Numbers of the designs that are not `there` and their values, a few at a time."""
+    """Return numbers of the designs that are not `there` and their values, a few at a time."""
     from scipy.stats import qmc
 
     sobol = qmc.Sobol(len(variables), rng=seed)
@@ -232,7 +232,7 @@ class _Design:
     model: str
 
     def rows(self, batch: Sequence[tuple[int, tuple[float, ...]]]) -> list[list[Any]]:
-        """Rows of some designs."""
+        """Return rows of some designs."""
         from ..files.scenario import Scenario
 
         refuse_other_sources(self.model)

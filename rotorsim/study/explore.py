@@ -71,12 +71,12 @@ class Knob:
     high: float
 
     def shown(self, value: float) -> float:
-        """Value in the unit shown, see `rotorsim.rows.show_units`."""
+        """Return the value in the unit shown, see `rotorsim.rows.show_units`."""
         _, factor, offset = shown_unit(self.base)
         return value * factor + offset
 
     def taken(self, shown: float) -> float:
-        """Value in `base` of a number in the unit shown."""
+        """Return the value in `base` of a number in the unit shown."""
         _, factor, offset = shown_unit(self.base)
         return (shown - offset) / factor
 
@@ -86,7 +86,7 @@ class Knob:
         return shown_unit(self.base)[0]
 
     def written(self, value: float) -> str | float:
-        """Entry of a file: the number as it was typed, with its unit."""
+        """Return the entry of a file: the number as it was typed, with its unit."""
         number = float(f"{self.shown(value):.6g}")
         return f"{number!r} {_TYPED.get(self.unit, self.unit)}" if self.base else number
 
@@ -138,7 +138,7 @@ def knobs(scenario: Scenario) -> list[Knob]:
 
 
 def _places(tables: Any, pattern: Path) -> list[tuple[Path, Any, str]]:
-    """Entries that a path with "*" names: path, value, number of several."""
+    """Return entries that a path with "*" names: path, value, number of several."""
     if "*" in pattern:
         star = pattern.index("*")
         inner = tables
@@ -210,7 +210,7 @@ def table_over_speed(scenario: Scenario, speeds: list[float], fine: bool) -> Coe
 
 
 def speeds_about(scenario: Scenario, count: int) -> list[float]:
-    """Speeds over the scenario's range; a fifth to 1.5 times of a single speed [rad/s]."""
+    """Return speeds over the scenario's range; a fifth to 1.5 times of a single speed [rad/s]."""
     low, high = float(scenario.speeds[0]), float(scenario.speeds[-1])
     if high < 1.5 * low:
         low, high = 0.2 * high, 1.5 * high

@@ -24,7 +24,7 @@ _Rows = list[Row]
 
 
 def input_rows(scenario: Scenario) -> dict[str, _Rows]:
-    """Everything that the results rest on, defaults included, by topic."""
+    """Return everything that the results rest on, defaults included, by topic."""
     return {
         "bearing": _bearing(scenario),
         "oil": _oil(scenario),
@@ -34,7 +34,7 @@ def input_rows(scenario: Scenario) -> dict[str, _Rows]:
 
 
 def _supply(groove: Groove) -> str:
-    """How a groove is fed."""
+    """Return how a groove is fed."""
     pressure = f"{number(groove.supply_pressure / 1e3)} kPa"
     match groove.restrictor:
         case None:
@@ -151,7 +151,10 @@ def _oil(scenario: Scenario) -> _Rows:
 
 
 def _grade(scenario: Scenario) -> _Rows:
-    """The ISO VG grade as the scenario's text has it: the law that follows from it keeps none."""
+    """Return the ISO VG grade as the scenario's text has it.
+
+    The law that follows from it keeps none.
+    """
     given = tomllib.loads(scenario.text).get("lubricant", {})
     if "iso_vg" not in given:
         return []

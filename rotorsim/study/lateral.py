@@ -82,7 +82,7 @@ def lateral_study(result: MachineResult) -> LateralStudy:
 
 
 def _loads(result: MachineResult) -> dict[int, float]:
-    """Static load on each support at the highest speed by its node [N]."""
+    """Return the static load on each support at the highest speed by its node [N]."""
     rotor = result.machine.rotor
     return {
         node_at(rotor, entry.at): float(np.hypot(*state.load[-1]))
@@ -110,7 +110,7 @@ def _curves(result: MachineResult, speed: float, notes: list[str]) -> list[Decre
 def response_document(
     study: LateralStudy, continuous: tuple[float, float] | None
 ) -> list[dict[str, Any]]:
-    """Response at the probes as plain data (SI).
+    """Return the response at the probes as plain data (SI).
 
     continuous : (float, float) or None. Range of continuous speeds that the margins of the peaks
         are measured from [rad/s].
@@ -140,7 +140,10 @@ def response_document(
 
 
 def _margins(peak: Peak, continuous: tuple[float, float] | None) -> dict[str, float | None]:
-    """Actual and required separation margin of a peak, as shares of the range's nearer end."""
+    """Return actual and required separation margin of a peak.
+
+    As shares of the range's nearer end.
+    """
     factor = peak.amplification_factor
     if continuous is None:
         return {"separation_margin": None, "required_margin": None}
@@ -150,7 +153,7 @@ def _margins(peak: Peak, continuous: tuple[float, float] | None) -> dict[str, fl
 
 
 def lateral_document(study: LateralStudy) -> Mapping[str, Any]:
-    """Checks of the lateral analysis as plain data (SI), with the formula of each limit."""
+    """Return checks of the lateral analysis as plain data (SI), with the formula of each limit."""
     return {
         "checks": [asdict(check) for check in study.checks],
         "passed": all(check.passed is not False for check in study.checks),

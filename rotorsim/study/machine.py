@@ -173,7 +173,7 @@ class HeatedMode:
 
 
 def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[HeatedMode]:
-    """Modes that grow with heating at the highest common speed and do not without.
+    """Return modes that grow with heating at the highest common speed and do not without.
 
     A mode's isothermal counterpart is the one of nearest shape (MAC) and frequency.
     """
@@ -200,7 +200,7 @@ def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[Hea
 
 
 def pinned_mesh_change(description: MachineFile) -> float:
-    """Largest relative change on twice the mesh of the lowest natural frequencies at rest.
+    """Return largest relative change on twice the mesh of the lowest natural frequencies at rest.
 
     The shaft is held where its supports stand: before any film is solved.
     """
@@ -222,7 +222,9 @@ def pinned_mesh_change(description: MachineFile) -> float:
 
 
 def free_motions(description: MachineFile) -> int:
-    """Rigid motions of the shaft, of 4 (two displacements, two tilts), that no stiffness resists.
+    """Return rigid motions of the shaft, of 4 (two displacements, two tilts).
+
+    That no stiffness resists.
 
     Films and tables count as stiff in both directions.
     """
@@ -316,7 +318,10 @@ def solve_films_together(
 
 
 def thermal_models(description: MachineFile) -> list[str]:
-    """Thermal models of a machine's bearings, ``isothermal`` first; ``given`` without films."""
+    """Return thermal models of a machine's bearings, ``isothermal`` first.
+
+    ``given`` without films.
+    """
     names = {str(model) for one in description.bearings.values() for model in one.thermal_models}
     return [str(model) for model in ThermalModel if str(model) in names] or [_GIVEN]
 
@@ -347,7 +352,7 @@ class MachineAnalysis:
         self.seal_nodes: list[int] = [node_at(rotor, entry.at) for entry in seals]
 
     def result(self) -> MachineResult:
-        """Statics, films, supports."""
+        """Return statics, films, supports."""
         names = self.description.support_names
         loads, points, statics = self._loads_and_points()
         states = tuple(
@@ -361,7 +366,7 @@ class MachineAnalysis:
     def assembled(
         self, states: Sequence[SupportState], films: Mapping[str, Support] | None = None
     ) -> Machine:
-        """Rotor on its supports; `films` stand in for those of the points, by name."""
+        """Return the rotor on its supports; `films` stand in for those of the points, by name."""
         names = self.description.support_names
         mounts = [
             Mount(node, self._support(entry, state, (films or {}).get(name)), name)
@@ -382,7 +387,7 @@ class MachineAnalysis:
         return Machine(self.rotor, mounts)
 
     def _force(self, speed: float) -> Array:
-        """Static forces on the rotor's unknowns at a speed [N]."""
+        """Return the static forces on the rotor's unknowns at a speed [N]."""
         force = np.zeros(self.rotor.size)
         if not self.description.operating.vertical:
             force += weight(self.rotor)
@@ -398,7 +403,7 @@ class MachineAnalysis:
     def _loads_and_points(
         self,
     ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
-        """Static loads (n_speed, n_supports, 2), the films' points, and the equilibria."""
+        """Return static loads (n_speed, n_supports, 2), the films' points, and the equilibria."""
         description, count = self.description, len(self.nodes)
         loads = np.full((self.speeds.size, count, 2), np.nan)
         placed = any(entry.coefficients or entry.ring for entry in description.support)
@@ -409,7 +414,7 @@ class MachineAnalysis:
         return self._indeterminate(loads)
 
     def determinate_loads(self) -> Array:
-        """Static loads of two supports, (n, 2, 2) [N]."""
+        """Return the static loads of two supports, (n, 2, 2) [N]."""
         loads = np.empty((self.speeds.size, 2, 2))
         raised, unmoved = self._elevations(), _displaced(np.zeros(2))
         for k, speed in enumerate(self.speeds):
@@ -419,7 +424,10 @@ class MachineAnalysis:
         return loads
 
     def film_cases(self) -> list[Case] | None:
-        """Films that `result` will ask its sweep for; None where they depend on speed or films."""
+        """Return films that `result` will ask its sweep for.
+
+        None where they depend on speed or films.
+        """
         if not self.description.bearings:
             return []
         if len(self.nodes) != 2:
@@ -470,7 +478,10 @@ class MachineAnalysis:
     def _journal(
         self, i: int, k: int, loads: Array, points: dict[str, tuple[OperatingPoint, ...]]
     ) -> Array:
-        """Displacement of a journal in its housing at speed k [m]; 0 where it is not known."""
+        """Return displacement of a journal in its housing at speed k [m].
+
+        0 where it is not known.
+        """
         film = points.get(self.description.support_names[i])
         if film is not None:
             return _journal_of(film[k], loads[k, i]) if film[k].converged else np.zeros(2)
@@ -522,11 +533,11 @@ class MachineAnalysis:
                 loads[:, i] *= wanted / size[:, None]
 
     def _elevations(self) -> Array:
-        """Displacements of the housings along x and y [m]; upwards is -x."""
+        """Return displacements of the housings along x and y [m]; upwards is -x."""
         return np.array([(-entry.elevation, 0.0) for entry in self.description.support])
 
     def case(self, i: int, scenario: Scenario, load: Array) -> Case:
-        """Film of support i under its load [N], in the load's frame."""
+        """Return the film of support i under its load [N], in the load's frame."""
         wanted = {str(model) for model in scenario.thermal_models}
         model = self.model if self.model in wanted else str(scenario.thermal_models[0])
         case = scenario.case(thermal_model=model)
@@ -541,7 +552,7 @@ class MachineAnalysis:
         return replace(case, bearing=case.bearing.turned(turn), target=LoadTarget(size))
 
     def _spring(self, i: int, speed: float) -> Law:
-        """Law of a support that is no film: a spring at the static load."""
+        """Return the law of a support that is no film: a spring at the static load."""
         entry = self.description.support[i]
         if entry.ring is not None:
             return ring_law(entry.ring, speed)
@@ -561,7 +572,7 @@ class MachineAnalysis:
         return lambda load: (np.asarray(softness @ load, dtype=float), softness)
 
     def _support(self, entry: SupportEntry, state: SupportState, film: Support | None) -> Support:
-        """Support in the machine's frame, pedestal included."""
+        """Return the support in the machine's frame, pedestal included."""
         support: Support
         if entry.bearing is not None:
             support = film or film_support(self.speeds, state)
@@ -577,7 +588,7 @@ class MachineAnalysis:
 
 
 def fixed_support(entry: SupportEntry) -> Support:
-    """Support of constant stiffness in the machine's frame, pedestal or damper included."""
+    """Return support of constant stiffness in the machine's frame, pedestal or damper included."""
     support: Support = ConstantSupport(
         _matrix(entry.stiffness), _matrix(entry.damping), _matrix(entry.mass)
     )
@@ -599,7 +610,7 @@ def _on_its_stand(entry: SupportEntry, support: Support) -> Support:
 def points_with_fields(
     result: MachineResult, places: Sequence[int]
 ) -> dict[str, list[OperatingPoint]]:
-    """Converged films of a result, solved again with their fields, by the support's name.
+    """Return converged films of a result, solved again with their fields, by the support's name.
 
     places : Which of the speeds, ascending.
     """
@@ -627,7 +638,7 @@ def points_with_fields(
 
 
 def _alike(loads: Array) -> bool:
-    """Whether the static loads are the same at all speeds."""
+    """Return whether the static loads are the same at all speeds."""
     return bool(np.allclose(loads, loads[0], rtol=1e-12, atol=0.0))
 
 
@@ -639,7 +650,7 @@ class _Film:
         self.warm: Any = None
 
     def point(self, load: Array, speed: float) -> OperatingPoint:
-        """Operating point under a load [N]."""
+        """Return the operating point under a load [N]."""
         from ..bearing.solve import solve_case
 
         point, warm = solve_case(self.case(load), speed, initial=self.warm)
@@ -648,7 +659,7 @@ class _Film:
         return point
 
     def law(self, speed: float) -> Law:
-        """Load to the journal's displacement and its derivative, machine frame."""
+        """Return the load to the journal's displacement and its derivative, machine frame."""
 
         def displacement(load: Array) -> tuple[Array, Array]:
             point = self.point(load, speed)
@@ -661,19 +672,19 @@ class _Film:
 
 
 def _journal_of(point: OperatingPoint, load: Array) -> Array:
-    """Displacement of the journal under a load [N] in the machine's frame [m]."""
+    """Return the displacement of the journal under a load [N] in the machine's frame [m]."""
     angle, size = point.attitude_angle, point.eccentricity_ratio * point.running_clearance
     place = size * np.array([math.cos(angle), math.sin(angle)])
     return np.asarray(rotation(math.atan2(load[1], load[0])) @ place, dtype=float)
 
 
 def _displaced(journal: Array) -> Law:
-    """Law of a support in which the journal stands at a known place."""
+    """Return the law of a support in which the journal stands at a known place."""
     return lambda _load: (journal, np.zeros((2, 2)))
 
 
 def film_support(speeds: Array, state: SupportState, full: bool = True) -> Support:
-    """Coefficients of a film's points over speed, turned to the machine's frame.
+    """Return coefficients of a film's points over speed, turned to the machine's frame.
 
     Without `full` those of pads are reduced at the shaft's frequency.
     """
@@ -704,7 +715,7 @@ def _matrix(given: Matrix | None) -> Array:
 
 
 def _modes_at(found: Modes, index: int) -> list[dict[str, Any]]:
-    """Modes at one speed as plain data, ascending in undamped frequency.
+    """Return modes at one speed as plain data, ascending in undamped frequency.
 
     One of each conjugate pair, and the real eigenvalues, whose frequency is 0.
     """
@@ -726,7 +737,7 @@ def _modes_at(found: Modes, index: int) -> list[dict[str, Any]]:
 
 
 def stability_document(results: dict[str, MachineResult]) -> dict[str, Any]:
-    """Stability of a machine as plain data (SI): the last thermal model's in front.
+    """Return the stability of a machine as plain data (SI): the last thermal model's in front.
 
     ``thermal_models`` has each model's own; ``destabilised_by_heating`` the modes that only heating
     makes unstable.
@@ -772,7 +783,7 @@ def _stability(result: MachineResult) -> dict[str, Any]:
 
 
 def supports_document(result: MachineResult) -> list[dict[str, Any]]:
-    """Supports of a machine as plain data (SI): load and film at each speed."""
+    """Return supports of a machine as plain data (SI): load and film at each speed."""
     return [
         {
             "name": state.name,

@@ -157,7 +157,7 @@ def study_machine_control(
 
 
 def _designed(small: Any, settings: MachineControl, speed: float) -> OutputFeedback:
-    """Feedback of the reduced machine."""
+    """Return the feedback of the reduced machine."""
     limit = settings.max_force
     if settings.design is Design.PD:
         return pd_of_sensors(small, _CORNER * speed, limit)
@@ -170,7 +170,7 @@ def _designed(small: Any, settings: MachineControl, speed: float) -> OutputFeedb
 
 
 def _unknowns(machine: Machine, places: Sequence[float]) -> list[int]:
-    """Numbers of the unknowns x and y at places."""
+    """Return numbers of the unknowns x and y at places."""
     rotor = machine.rotor
     return [k for at in places for k in rotor.planes[node_at(rotor, at)]]
 
@@ -185,7 +185,7 @@ def _highest(system: Any) -> float:
 
 
 def _start(machine: Machine, speed: float, disturbance: float) -> Array:
-    """State on the least stable mode's shape, its largest displacement `disturbance`."""
+    """Return the state on the least stable mode's shape, its largest displacement `disturbance`."""
     found = modes(machine, speed)
     k = int(found.least_stable[0])
     value, shape = complex(found.eigenvalues[0, k]), found.shapes[0, k]
@@ -197,7 +197,7 @@ def _start(machine: Machine, speed: float, disturbance: float) -> Array:
 
 
 def _least_stable_first(matrix: Array) -> ComplexArray:
-    """Eigenvalues; a real part below its own accuracy is 0."""
+    """Return eigenvalues; a real part below its own accuracy is 0."""
     found = all_eigenmodes(matrix, matrix.shape[0] // 2)
     undamped = np.abs(found.values.real) <= found.accuracy
     values: Any = np.where(undamped, 1j * found.values.imag, found.values)

@@ -61,7 +61,7 @@ def map_of_machine(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> Plane:
-    """Growth rate of the least stable mode over two parameters of a machine.
+    """Return the growth rate of the least stable mode over two parameters of a machine.
 
     x, y : Names of parameters, see `rotorsim.files.parameters`: ``speed``,
         ``left.radial_clearance``.
@@ -100,13 +100,13 @@ def map_of_machine(
 
 
 def map_of_entry(machine: MachineFile, entry: MapEntry, **options: object) -> Plane:
-    """One ``[[map]]`` of a machine's file."""
+    """Return one ``[[map]]`` of a machine's file."""
     values = {"x": entry.x_values, "y": entry.y_values}
     return map_of_machine(machine, entry.x, entry.y, values, entry.hold, **options)  # type: ignore[arg-type]
 
 
 def _axis(one: Parameter, machine: MachineFile, given: object, key: str) -> Array:
-    """Values along an axis, at least two."""
+    """Return values along an axis, at least two."""
     if given is not None:
         found = np.array(one.values(given, f"{key}_values"))
         if found.size < 2:
@@ -147,7 +147,9 @@ def _solve_variants(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> list[MachineResult]:
-    """Films and supports of variants at some speeds; a film that several share is solved once.
+    """Return films and supports of variants at some speeds.
+
+    A film that several share is solved once.
 
     model : Thermal model.
     speeds : [rad/s]
@@ -238,11 +240,11 @@ class _Job:
         ]
 
     def variant(self, x: float, y: float) -> Variant:
-        """Machine at a place of the map."""
+        """Return the machine at a place of the map."""
         return self.axes[1].applied(self.axes[0].applied(self.base, x), y)
 
     def result(self, model: str) -> tuple[Array, Array, float, list[OperatingPoint]]:
-        """Growth rate and frequency (n_x, n_y), interpolation error, and the films behind them."""
+        """Return growth rate and frequency (n_x, n_y), interpolation error, and the films."""
         own = np.array(self.base.machine.operating.speeds)
         speeds = [self.speed]
         if self.speed_axis is not None:
@@ -263,7 +265,7 @@ class _Job:
         return found[..., 0], found[..., 1], error, list(points.values())
 
     def _interpolation_error(self, model: str, films: _Films, places: Sequence[float]) -> float:
-        """Largest change of the growth rate at values that are left out; NaN: not known."""
+        """Return largest change of the growth rate at values that are left out; NaN: not known."""
         changes = [math.nan]
         for axis, nodes in enumerate(self.film_nodes):
             if nodes.size < 5:
@@ -285,7 +287,7 @@ class _Job:
         return float(np.nanmax(changes)) if len(changes) > 1 else math.nan
 
     def plane(self, found: Mapping[str, tuple[Array, Array, float, list[OperatingPoint]]]) -> Plane:
-        """Results of all thermal models as one dataset."""
+        """Return results of all thermal models as one dataset."""
         import xarray as xr
 
         dims = [re.sub(r"\W+", "_", one.name) for one in self.axes]
@@ -350,7 +352,7 @@ class _Films:
         self, job: _Job, nodes: Sequence[Array], along: Sequence[Array],
         kept: tuple[int, Indices] | None = None,
     ) -> tuple[_Grid, tuple[SupportState, ...]]:  # fmt: skip
-        """Matrices over the values `along`, from those at `nodes`, and the supports' loads.
+        """Return matrices over the values `along`, from those at `nodes`, and the supports' loads.
 
         `kept`: an axis and the nodes along it that are used.
         """
@@ -383,7 +385,10 @@ class _Films:
 def _matrices(
     speeds: Array, states: Sequence[SupportState], wanted: Array
 ) -> tuple[tuple[str, ...], int, Array]:
-    """K, C, M of a film's states at wanted speeds, (n_state, n_speed, 3, m, m); NaN: not known."""
+    """Return k, C, M of a film's states at wanted speeds, (n_state, n_speed, 3, m, m).
+
+    NaN: not known.
+    """
     supports = [film_support(speeds, state) for state in states]
     if len({one.unknowns for one in supports}) > 1:
         # Pads that carry load here and none there: all of them reduced at the shaft's frequency.
@@ -398,7 +403,7 @@ def _matrices(
 
 
 def _between(nodes: Array, values: Array, wanted: Array, axis: int) -> Array:
-    """Monotone cubic between nodes along an axis; NaN where a neighbour is not known."""
+    """Return the monotone cubic between nodes along an axis; NaN where a neighbour is not known."""
     from scipy.interpolate import PchipInterpolator
 
     moved = np.moveaxis(values, axis, 0)

@@ -173,7 +173,7 @@ class _Builder:
         return wanted if wanted is not None and wanted in names else names[-1]
 
     def _result(self, known: MachineResult | None) -> MachineResult | None:
-        """Films over speed, where a support needs its coefficients or loads."""
+        """Return films over speed, where a support needs its coefficients or loads."""
         from .machines import machine_results
 
         entries = self.machine.support
@@ -193,7 +193,7 @@ class _Builder:
         return results[self._model(list(results))]
 
     def _reactions(self) -> Array | None:
-        """Static loads (n, 2) on the supports at the first speed [N]."""
+        """Return the static loads (n, 2) on the supports at the first speed [N]."""
         if self.result is not None and self.result.statics:
             speeds = self.result.speeds
             loads = np.stack([one.reactions for one in self.result.statics])
@@ -344,7 +344,7 @@ class _Builder:
         return scenario.case(thermal_model=self._model([str(m) for m in scenario.thermal_models]))
 
     def _film(self, i: int, kind: MachineForce) -> tuple[BearingForce, float]:
-        """Nonlinear force of a bearing's film, and the angle of its frame."""
+        """Return nonlinear force of a bearing's film, and the angle of its frame."""
         case, key = self._plain_case(i), f"support[{i}].force"
         bearing = case.bearing
         if kind is MachineForce.SHORT:
@@ -381,7 +381,7 @@ class _Builder:
     # equations --------------------------------------------------------------------------------
 
     def problem(self) -> MotionProblem:
-        """Everything together; the reduction is refined until its error is small enough."""
+        """Return everything together; the reduction is refined until its error is small enough."""
         linear = self._supports()
         modes = self.settings.modes
         if modes is not None or self.rotor.size <= _SMALL:
@@ -550,7 +550,10 @@ class _Builder:
     def _block(
         self, linear: Machine, place: Indices, seals: dict[str, Array]
     ) -> LinearBlock | None:
-        """Linear supports about their static positions over speed; seals about where they rest."""
+        """Return linear supports about their static positions over speed.
+
+        Seals about where they rest.
+        """
         loads = [node_at(self.rotor, entry.at) for entry in self.machine.load]
         wanted = {int(i) for at in linear.places for i in at}
         wanted |= {i for node in loads for i in self.rotor.planes[node]}
@@ -597,7 +600,10 @@ class _Builder:
         return LinearBlock(place[unknowns], law)
 
     def _statics(self) -> Callable[[str, float], tuple[Array, Array]] | None:
-        """Reaction (2,) and displacement of the rotor (size,) over speed, where they are known."""
+        """Return reaction (2,) and displacement of the rotor (size,) over speed.
+
+        Where they are known.
+        """
         if self.result is None or not self.result.statics:
             return None
         if not self.settings.gravity:
@@ -636,7 +642,7 @@ class _Builder:
         return moved
 
     def _rest(self, system: MotionSystem) -> Array:
-        """Static position at the first speed."""
+        """Return the static position at the first speed."""
         guess = np.zeros(system.size)
         if system.links and self.reactions is not None:
             self._hung(system, guess)
@@ -690,7 +696,7 @@ class _Builder:
         self, system: MotionSystem, rest: Array, still: Array, whole: dict[str, Array],
         place: Indices,
     ) -> float:  # fmt: skip
-        """Largest relative change of an eigenvalue below the highest excitation."""
+        """Return the largest relative change of an eigenvalue below the highest excitation."""
         from scipy.linalg import eigvals
 
         speed = self.top
@@ -782,7 +788,7 @@ def limit_cycles(
 
 
 def branch_document(branch: Branch) -> dict[str, Any]:
-    """Periodic motions over speed as plain data (SI)."""
+    """Return the periodic motions over speed as plain data (SI)."""
     return {
         "threshold": branch.threshold,
         "supercritical": branch.supercritical,
@@ -831,7 +837,7 @@ def largest_disturbance(
     revolutions: int = 60,
     steps: int = 8,
 ) -> tuple[float, float]:
-    """Largest shift of the whole rotor from its static position after which it comes to rest.
+    """Return the largest shift of the rotor from its static position that it survives.
 
     machine, orbit : See `simulate`; at constant speed. Unbalance is left out.
     direction : (float, float). Of the shift along x and y.
@@ -869,7 +875,7 @@ def largest_disturbance(
 
 
 def problem_shift(problem: MotionProblem, along: Array) -> Array:
-    """Unknowns (n,) of a unit shift of the journals in their films."""
+    """Return unknowns (n,) of a unit shift of the journals in their films."""
     shape = np.zeros(problem.system.size)
     for link in problem.system.links:
         if link.film:
@@ -878,7 +884,7 @@ def problem_shift(problem: MotionProblem, along: Array) -> Array:
 
 
 def labelled(motion: Motion, name: str) -> Orbit:
-    """Orbit of a station, which figures and recordings call by the station's name."""
+    """Return the orbit of a station, which figures and recordings call by the station's name."""
     orbit = motion.orbit(name)
     if orbit.constant_speed and orbit.status is OrbitStatus.COMPLETED:
         found = recognise(orbit)
@@ -887,7 +893,7 @@ def labelled(motion: Motion, name: str) -> Orbit:
 
 
 def motion_document(motion: Motion) -> dict[str, Any]:
-    """Motion of a machine as plain data (SI); its stations as `describe_orbit` has them."""
+    """Return motion of a machine as plain data (SI); its stations as `describe_orbit` has them."""
     problem = motion.problem
     rows = []
     for one in motion.stations:
@@ -919,7 +925,7 @@ def motion_document(motion: Motion) -> dict[str, Any]:
 
 
 def films_in_motion(motion: Motion) -> list[FilmFrame]:
-    """Pressure of each nonlinear film along the run, some moments of it.
+    """Return the pressure of each nonlinear film along the run, some moments of it.
 
     Of closed forms and maps the pressure is that of a film of the same length solved for the
     journal's position and velocity.
@@ -1014,7 +1020,7 @@ def _padded_vector(vector: Any, size: int) -> Any:
 
 
 def _moved(link: Link, place: Indices) -> Link:
-    """Link between the reduced unknowns."""
+    """Return the link between the reduced unknowns."""
 
     def at(pair: tuple[int, int]) -> tuple[int, int]:
         return (int(place[pair[0]]), int(place[pair[1]])) if pair[0] >= 0 else GROUND

@@ -34,7 +34,7 @@ def _suffix(results: dict[str, MachineResult], model: str) -> str:
 
 
 def least_stable_rows(results: dict[str, MachineResult], every: bool = False) -> Iterator[Rows]:
-    """Least stable mode over speed, a table for each thermal model."""
+    """Return the least stable mode over speed, a table for each thermal model."""
     head = ("rpm", "Hz", "f/rev", "log decrement", "growth 1/s", "whirl", "verdict")
     for model, result in results.items():
         found = result.modes
@@ -55,7 +55,7 @@ def least_stable_rows(results: dict[str, MachineResult], every: bool = False) ->
 
 
 def least_stable_below(found: Modes) -> Indices:
-    """Branch of largest growth rate up to three times the highest speed, or unstable, (n,).
+    """Return branch of largest growth rate up to three times the highest speed, or unstable, (n,).
 
     Bending modes far above the speeds are hardly damped and hide those that films decide.
     """
@@ -67,7 +67,7 @@ def least_stable_below(found: Modes) -> Indices:
 
 
 def critical_rows(results: dict[str, MachineResult]) -> Iterator[Rows]:
-    """Critical and threshold speeds, a table for each thermal model that has some."""
+    """Return the critical and threshold speeds, a table for each thermal model that has some."""
     for model, result in results.items():
         rows = [
             (f"{one.speed * RPM:.0f}", "critical speed", one.whirl,
@@ -86,7 +86,7 @@ def critical_rows(results: dict[str, MachineResult]) -> Iterator[Rows]:
 
 
 def mode_rows(result: MachineResult, count: int = 10) -> Rows:
-    """Lowest oscillating modes at the highest speed."""
+    """Return the lowest oscillating modes at the highest speed."""
     head = ("mode", "Hz", "f/rev", "log decrement", "damping ratio", "growth 1/s", "whirl")
     rows = []
     if result.modes is not None:
@@ -105,7 +105,7 @@ def mode_rows(result: MachineResult, count: int = 10) -> Rows:
 
 
 def support_rows(results: dict[str, MachineResult], every: bool = False) -> Iterator[Rows]:
-    """Load and film of each bearing over speed."""
+    """Return the load and film of each bearing over speed."""
     head = heads("rpm", "load kN", "direction deg", "e/c", "h min µm", "T max °C", "status")
     for model, result in results.items():
         for state in result.supports:
@@ -125,7 +125,7 @@ def support_rows(results: dict[str, MachineResult], every: bool = False) -> Iter
 
 
 def peak_rows(study: LateralStudy) -> Iterator[Rows]:
-    """Peaks of the unbalance response, a table for each probe that has some."""
+    """Return peaks of the unbalance response, a table for each probe that has some."""
     for response in study.responses:
         rows = []
         for peak in response.peaks:
@@ -140,7 +140,7 @@ def peak_rows(study: LateralStudy) -> Iterator[Rows]:
 
 
 def check_rows(study: LateralStudy) -> Iterator[Rows]:
-    """Lateral checks with their limits; none without."""
+    """Return the lateral checks with their limits; none without."""
     if not study.checks:
         return
     rows = []
@@ -159,7 +159,7 @@ def _shown(value: float | None, unit: str) -> str:
 
 
 def sensitivity_rows(study: LateralStudy) -> Iterator[Rows]:
-    """Decrement against destabilising stiffness (level I)."""
+    """Return the decrement against destabilising stiffness (level I)."""
     if not study.decrement_curves:
         return
     rows = [
@@ -174,7 +174,7 @@ def sensitivity_rows(study: LateralStudy) -> Iterator[Rows]:
 
 
 def heating_lines(results: dict[str, MachineResult]) -> list[str]:
-    """Modes that only heating makes unstable, a sentence each."""
+    """Return modes that only heating makes unstable, a sentence each."""
     if len(results) < 2:
         return []
     cold, hot = next(iter(results.values())), results[next(reversed(results))]
@@ -187,7 +187,7 @@ def heating_lines(results: dict[str, MachineResult]) -> list[str]:
 
 
 def mesh_line(result: MachineResult) -> str:
-    """What twice as many elements change."""
+    """Return what twice as many elements change."""
     changes = [change for _, change in result.mesh_change]
     said = f"mesh: {len(result.machine.rotor.nodes)} nodes"
     if not changes:
@@ -199,7 +199,7 @@ def mesh_line(result: MachineResult) -> str:
 
 
 def moving_rows(moving: Sequence[Sensitivity]) -> Iterator[Rows]:
-    """What each parameter does to the threshold speed; none without."""
+    """Return what each parameter does to the threshold speed; none without."""
     if not moving:
         return
     rows = [
@@ -243,7 +243,7 @@ def failure_lines(results: dict[str, MachineResult]) -> list[str]:
 
 
 def verdict_lines(results: dict[str, MachineResult]) -> list[str]:
-    """Verdict at the highest speed, one for each thermal model."""
+    """Return the verdict at the highest speed, one for each thermal model."""
     return [
         f"{'' if len(results) == 1 else f'{model}: '}{result.verdict} at "
         f"{float(result.known[-1]) * RPM:.0f} rpm"
@@ -253,7 +253,7 @@ def verdict_lines(results: dict[str, MachineResult]) -> list[str]:
 
 
 def _some(count: int, every: bool) -> Sequence[int]:
-    """Indices of at most so many rows, evenly spread, the first and last among them."""
+    """Return indices of at most so many rows, evenly spread, the first and last among them."""
     if every or count <= _SHOWN_SPEEDS:
         return range(count)
     return [round(i) for i in np.linspace(0, count - 1, _SHOWN_SPEEDS)]

@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 
 @lru_cache(maxsize=8)
 def machine_results(machine: MachineFile) -> dict[str, MachineResult]:
-    """Results of a machine file by thermal model, solved once."""
+    """Return results of a machine file by thermal model, solved once."""
     return analyse_machine(machine)
 
 
 def assembled(machine: MachineFile | Machine, thermal_model: str | None = None) -> Machine:
-    """Machine with its films solved over the file's speeds.
+    """Return the machine with its films solved over the file's speeds.
 
     machine : MachineFile or Machine. A `Machine` is returned as it is.
     thermal_model : ``isothermal`` or ``thd``; by default the last one that the bearings' files
@@ -63,7 +63,7 @@ def modes(
     *,
     thermal_model: str | None = None,
 ) -> Modes:
-    """Modes of a machine at one speed, or over speed as continuous branches.
+    """Return modes of a machine at one speed, or over speed as continuous branches.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def unbalance_response(
     *,
     thermal_model: str | None = None,
 ) -> UnbalanceResponse:
-    """Steady response of a machine to its unbalance.
+    """Return the steady response of a machine to its unbalance.
 
     Parameters are those of `modes`.
     """
@@ -103,7 +103,7 @@ def state_space(
     *,
     thermal_model: str | None = None,
 ) -> control.StateSpace:
-    """State space of a machine at one speed, or of a rigid rotor on one bearing's film.
+    """Return the state space of a machine at one speed, or of a rigid rotor on one bearing's film.
 
     Parameters
     ----------

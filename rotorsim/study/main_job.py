@@ -155,7 +155,7 @@ def compute(
 def _simulated_orbits(
     scenario: Scenario, table: CoefficientTable, attempt: Attempts
 ) -> list[Orbit]:
-    """The scenario's orbit with each thermal model, and on a linear film its companion."""
+    """Return the scenario's orbit with each thermal model, and on a linear film its companion."""
     settings, _ = orbit_steps.orbit_settings(scenario)
     ramped = isinstance(settings.speed, SpeedRamp)
     orbits: list[Orbit] = []
@@ -177,14 +177,17 @@ def _simulated_orbits(
 
 
 def _one_orbit(scenario: Scenario, table: CoefficientTable, model: str, companion: bool) -> Orbit:
-    """The scenario's orbit with one thermal model, or its companion (see `companion_schedule`)."""
+    """Return the scenario's orbit with one thermal model, or its companion.
+
+    See `companion_schedule`.
+    """
     settings, _ = orbit_steps.orbit_settings(scenario)
     schedule = orbit_steps.companion_schedule(settings, table) if companion else None
     return orbit_steps.simulate_orbit(scenario, table, thermal_model=model, schedule=schedule)
 
 
 def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
-    """Stability map over speed and the scenario's masses.
+    """Return the stability map over speed and the scenario's masses.
 
     Without masses in the scenario: up to three times that of its rotor; see `_usual_mass`.
     """
@@ -201,7 +204,7 @@ def map_of(scenario: Scenario, table: CoefficientTable) -> StabilityMap:
 
 
 def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
-    """The rotor's mass per bearing [kg]; without one that of its kind.
+    """Return the rotor's mass per bearing [kg]; without one that of its kind.
 
     That is the critical mass at the highest speed (the median of all), or, where no mass is
     critical, what weighs as much as the load.
@@ -223,7 +226,7 @@ def _usual_mass(scenario: Scenario, table: CoefficientTable) -> float:
 
 
 def _modes_of(scenario: Scenario, table: CoefficientTable) -> list[Campbell]:
-    """All modes of the scenario's rotor over speed, for each thermal model of the table.
+    """Return all modes of the scenario's rotor over speed, for each thermal model of the table.
 
     In the orbit's clearance; without an orbit in the first one.
     """
@@ -240,7 +243,10 @@ def _modes_of(scenario: Scenario, table: CoefficientTable) -> list[Campbell]:
 
 
 def _film_points(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
-    """Films over the speeds with their fields, for each thermal model; each starts the next."""
+    """Return films over the speeds with their fields, for each thermal model.
+
+    Each starts the next.
+    """
     from ..bearing.solve import solve_case
 
     count = min(len(scenario.speeds), _FILM_FRAMES)
@@ -258,7 +264,7 @@ def _film_points(scenario: Scenario, clearance: float) -> list[OperatingPoint]:
 
 
 def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
-    """The closing words as plain data: counts, heating's effect, orbits, files, problems."""
+    """Return the closing words as plain data: counts, heating's effect, orbits, files, problems."""
     counts: dict[str, int] = {}
     for point in results.points:
         counts[point.status.value] = counts.get(point.status.value, 0) + 1
@@ -285,7 +291,7 @@ def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
 
 
 def _expected_growth(table: CoefficientTable, orbit: Orbit, mass: float) -> float | None:
-    """Growth rate that the eigenvalues give for the orbit's last speed [1/s]."""
+    """Return the growth rate that the eigenvalues give for the orbit's last speed [1/s]."""
     from ..errors import InputError
     from ..machine.rates import eigenvalues
     from .orbits import curve_of
@@ -301,7 +307,7 @@ def _expected_growth(table: CoefficientTable, orbit: Orbit, mass: float) -> floa
 def _heating_effect(
     points: Sequence[OperatingPoint], curves: Sequence[StabilityCurve]
 ) -> list[dict[str, Any]]:
-    """Isothermal against THD at the highest speed, clearance by clearance.
+    """Return isothermal against THD at the highest speed, clearance by clearance.
 
     Returns: ``radial_clearance``, ``speed``, and for each model's name what the film carries and
         costs there, the critical mass, and of the scenario's rotor its ``verdict`` (``stable``,

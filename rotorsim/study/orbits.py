@@ -160,7 +160,7 @@ def _orbit_problem(
 def _carried_load(
     table: CoefficientTable, model: str, settings: OrbitSettings, speed: float
 ) -> float | None:
-    """Static load of the table [N]; None where it does not say."""
+    """Return the static load of the table [N]; None where it does not say."""
     if settings.actuator is None:
         return None
     return curve_of(table, model, settings.radial_clearance).at(speed).load
@@ -169,7 +169,7 @@ def _carried_load(
 def _linear_force(
     scenario: Scenario, table: CoefficientTable, model: str
 ) -> tuple[LinearForce, Bearing]:
-    """Stiffness and damping of the table, about its static positions."""
+    """Return the stiffness and damping of the table, about its static positions."""
     from ..orbit import LinearForce
 
     clearance = orbit_settings(scenario)[0].radial_clearance
@@ -186,7 +186,9 @@ def _linear_force(
 
 
 def _nonlinear_film(scenario: Scenario, model: str, speeds: Sequence[float]) -> LoadedFilm:
-    """Nonlinear film of the orbit's bearing between speeds, its operating point at the highest.
+    """Return nonlinear film of the orbit's bearing between speeds.
+
+    Its operating point at the highest.
 
     With an eccentricity ratio in place of a load, the load is that which gives it at this speed.
     """
@@ -202,7 +204,7 @@ def _nonlinear_film(scenario: Scenario, model: str, speeds: Sequence[float]) -> 
 
 
 def orbit_settings(scenario: Scenario) -> tuple[OrbitSettings, Rotor]:
-    """What to simulate, or an `InputError` that says what the scenario lacks."""
+    """Return what to simulate, or an `InputError` that says what the scenario lacks."""
     if scenario.orbit is None or scenario.rotor is None:
         missing = "orbit" if scenario.orbit is None else "rotor"
         raise InputError(
@@ -214,7 +216,7 @@ def orbit_settings(scenario: Scenario) -> tuple[OrbitSettings, Rotor]:
 
 
 def scenario_schedule(settings: OrbitSettings) -> SpeedSchedule:
-    """Shaft speed over time, as the scenario has it."""
+    """Return the shaft speed over time, as the scenario has it."""
     from ..orbit import SpeedSchedule
 
     if isinstance(settings.speed, SpeedRamp):
@@ -224,7 +226,7 @@ def scenario_schedule(settings: OrbitSettings) -> SpeedSchedule:
 
 
 def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> SpeedSchedule:
-    """The other kind of run: up from the lowest speed, or constant at the ramp's end."""
+    """Return the other kind of run: up from the lowest speed, or constant at the ramp's end."""
     from ..orbit import SpeedSchedule
 
     if isinstance(settings.speed, SpeedRamp):
@@ -236,21 +238,24 @@ def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> Spee
 
 
 def curve_of(table: CoefficientTable, model: str, clearance: float) -> CoefficientTable:
-    """Curve of a thermal model and a clearance [m]; a table without clearances is for any."""
+    """Return curve of a thermal model and a clearance [m].
+
+    A table without clearances is for any.
+    """
     known = table.dataset["radial_clearance"].values
     chosen = {} if np.isnan(known).all() else {"radial_clearance": clearance}
     return table.select(thermal_model=model, **chosen)
 
 
 def _has_positions(table: CoefficientTable) -> bool:
-    """Whether the table says where the journal stands; one of another program need not."""
+    """Return whether the table says where the journal stands; one of another program need not."""
     return {"eccentricity_ratio", "attitude_angle"} <= set(table.dataset)
 
 
 def _static_position(
     one: CoefficientTable, clearance: float
 ) -> Callable[[float], tuple[float, float]]:
-    """Journal's static position over speed, from a table of one curve with positions.
+    """Return journal's static position over speed, from a table of one curve with positions.
 
     one : With a converged point.
     clearance : Radial [m].
@@ -326,7 +331,7 @@ class FilmFrame:
 
 
 def film_at_rest(point: OperatingPoint, bearing: Bearing) -> FilmFrame:
-    """Film of an operating point that kept its fields; its bearing in the load frame.
+    """Return the film of an operating point that kept its fields; its bearing in the load frame.
 
     Raises InputError: The point was solved without its fields.
     """
@@ -355,7 +360,7 @@ def film_at_rest(point: OperatingPoint, bearing: Bearing) -> FilmFrame:
 
 
 def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
-    """Film along an orbit on the nonlinear film, ascending in time.
+    """Return the film along an orbit on the nonlinear film, ascending in time.
 
     Pressure is solved for the journal's position and velocity; the temperature lies between those
     of operating points, as in the simulation. Moments at which no film is found are left out.
@@ -405,7 +410,10 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
 
 
 def _shown_samples(orbit: Orbit) -> Indices:
-    """Samples at which the film is shown: every move at both ends of the run, few between."""
+    """Return samples at which the film is shown.
+
+    Every move at both ends of the run, few between.
+    """
     turn = orbit.samples_per_revolution
     step = max(1, turn // _FRAMES_PER_REVOLUTION)
     every = np.arange(0, orbit.t.size, step)
@@ -430,7 +438,7 @@ def _shown_case(case: Case) -> Case:
 def _temperatures(
     solution: FilmSolution, others: Sequence[FilmSolution]
 ) -> Callable[[float], tuple[Array, float]] | None:
-    """Speed [rad/s] to the mean across the film and the hottest place [K]."""
+    """Return the speed [rad/s] to the mean across the film and the hottest place [K]."""
     from ..orbit.film_force import field_on
 
     if solution.thermal is None:

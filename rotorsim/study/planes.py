@@ -79,12 +79,12 @@ class Plane:
         return quantity(x), quantity(y)
 
     def values(self, name: str, model: str) -> Array:
-        """Variable of one thermal model, (n_x, n_y)."""
+        """Return the variable of one thermal model, (n_x, n_y)."""
         part = self.dataset[name].sel(thermal_model=model)
         return part.transpose(self.x, self.y).values
 
     def growth(self, model: str) -> Array:
-        """Largest real part of the eigenvalues [1/s], above 0 where unstable, (n_x, n_y)."""
+        """Return largest real part of the eigenvalues [1/s], above 0 where unstable, (n_x, n_y)."""
         return self.values("growth_rate", model)
 
     @property
@@ -97,7 +97,7 @@ class Plane:
 
 
 def held_text(held: Mapping[str, float]) -> str:
-    """``1200 kg, c = 100 µm``: what a plane or a diagram holds."""
+    """Return ``1200 kg, c = 100 µm``: what a plane or a diagram holds."""
     return ", ".join(quantity(name).said(value) for name, value in held.items())
 
 
@@ -222,7 +222,7 @@ def _check_plane(x: str, y: str, held: Mapping[str, float] | None) -> None:
 def _film_values(
     scenario: Scenario, name: str, given: Sequence[float] | None, *, on_axis: bool
 ) -> list[float]:
-    """Values of a film dimension to solve."""
+    """Return values of a film dimension to solve."""
     if given is not None:
         found = [float(value) for value in given]
         if on_axis and len(found) < 2:
@@ -248,7 +248,7 @@ def _film_values(
 
 
 def solved_speeds(own: Array, wanted: Array) -> list[float]:
-    """Speeds to solve: the file's own where they cover the wanted ones densely enough."""
+    """Return speeds to solve: the file's own where they cover the wanted ones densely enough."""
     low, high = float(wanted[0]), float(wanted[-1])
     if not high > low:
         return [low]
@@ -278,7 +278,7 @@ def _median_critical_mass(table: CoefficientTable) -> float:
 
 
 def _spread(values: Array, cells: int) -> Array:
-    """`cells` values from the first to the last."""
+    """Return `cells` values from the first to the last."""
     return np.linspace(float(values[0]), float(values[-1]), cells)
 
 
@@ -290,7 +290,7 @@ _VISCOSITY_LIMITS = (1e-7, 1e5)
 
 
 def _with_supply_temperature(case: Case, temperature: float) -> Case:
-    """`case` with all oil, that of the grooves included, supplied at `temperature` [K]."""
+    """Return `case` with all oil, that of the grooves included, supplied at `temperature` [K]."""
     viscosity = float(case.lubricant.viscosity(temperature))
     low, high = _VISCOSITY_LIMITS
     if not (math.isfinite(viscosity) and low <= viscosity <= high):
@@ -308,7 +308,7 @@ def _with_supply_temperature(case: Case, temperature: float) -> Case:
 
 
 def _with_viscosity(case: Case, factor: float) -> Case:
-    """`case` with an oil that is `factor` as viscous at every temperature."""
+    """Return `case` with an oil that is `factor` as viscous at every temperature."""
     if not (math.isfinite(factor) and factor > 0.0):
         raise InputError("must be above 0", key="viscosity", value=factor)
     oil: Lubricant = case.lubricant
@@ -324,12 +324,12 @@ def _with_viscosity(case: Case, factor: float) -> Case:
 
 
 def with_mesh(scenario: Scenario, mesh: MeshSize) -> Scenario:
-    """`scenario` on another mesh."""
+    """Return `scenario` on another mesh."""
     return dataclasses.replace(scenario, film=dataclasses.replace(scenario.film, mesh=mesh))
 
 
 def machine_with_mesh(machine: MachineFile, mesh: MeshSize | None) -> MachineFile:
-    """`machine` with its bearings on another mesh."""
+    """Return `machine` with its bearings on another mesh."""
     if mesh is None:
         return machine
     bearings = {name: with_mesh(one, mesh) for name, one in machine.bearings.items()}

@@ -32,7 +32,7 @@ def solve(
     supply_temperature: float | None = None,
     rotations: bool | None = None,
 ) -> OperatingPoint:
-    """One operating point of a scenario, its fields included.
+    """Return one operating point of a scenario, its fields included.
 
     Parameters
     ----------

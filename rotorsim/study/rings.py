@@ -22,7 +22,7 @@ _SLOWEST = 1e-4
 
 
 def damper_force(damper: Damper, short: bool = False) -> BearingForce:
-    """Squeeze film of a damper: the finite film's map, or the short one's closed form.
+    """Return the squeeze film of a damper: the finite film's map, or the short one's closed form.
 
     Raises InputError: The closed form is asked for with end seals.
     """
@@ -42,7 +42,7 @@ def damper_force(damper: Damper, short: bool = False) -> BearingForce:
 
 
 def centred_damping(damper: Damper) -> float:
-    """Damping [N s/m] of a damper in small circular motions about its centre.
+    """Return the damping [N s/m] of a damper in small circular motions about its centre.
 
     That of the short film with open ends, of the finite film with seals.
     """
@@ -52,7 +52,7 @@ def centred_damping(damper: Damper) -> float:
 
 
 def ring_films(ring: FloatingRing) -> tuple[ShortBearingForce, ShortBearingForce]:
-    """Short films inside and outside of a ring."""
+    """Return the short films inside and outside of a ring."""
     return (
         ShortBearingForce(
             ring.inner_viscosity, ring.inner_length, 0.5 * ring.inner_diameter,
@@ -79,7 +79,7 @@ class RingState:
 
 
 def ring_state(ring: FloatingRing, load: Array, speed: float) -> RingState:
-    """Places of journal and ring under a load [N] at a speed [rad/s], and the ring's speed.
+    """Return places of journal and ring under a load [N] at a speed [rad/s], and the ring's speed.
 
     The torques of both films on the ring balance: each film's shear, and its half of the couple of
     the eccentric force.
@@ -124,7 +124,7 @@ def ring_state(ring: FloatingRing, load: Array, speed: float) -> RingState:
 
 
 def ring_law(ring: FloatingRing, speed: float) -> Law:
-    """Load to the journal's displacement and its derivative (see `machine.statics`)."""
+    """Return the load to the journal's displacement and its derivative (see `machine.statics`)."""
 
     def at(load: Array) -> Array:
         state = ring_state(ring, load, speed)
@@ -143,7 +143,7 @@ def _slopes(force: BearingForce, place: Array, speed: float) -> tuple[Array, Arr
 
 
 def ring_support(ring: FloatingRing, speeds: Array, loads: Array) -> Support:
-    """Linear support of a floating-ring bearing, the ring with unknowns of its own.
+    """Return linear support of a floating-ring bearing, the ring with unknowns of its own.
 
     speeds : (n,) array. [rad/s]
     loads : (n, 2) array. Static loads along x and y [N].

@@ -46,7 +46,7 @@ class Sensitivity:
 
 @on_one_blas_thread
 def sensitivities(result: MachineResult, workers: int | None = None) -> list[Sensitivity]:
-    """Sensitivities of the first threshold speed, the largest effect first.
+    """Return sensitivities of the first threshold speed, the largest effect first.
 
     Notes
     -----
@@ -75,7 +75,7 @@ class _Mode:
     slope: float | None
 
     def effects(self, change: ComplexArray, places: Any) -> tuple[float, float | None]:
-        """Changes of growth rate and threshold by a change of Z at some unknowns."""
+        """Return changes of growth rate and threshold by a change of Z at some unknowns."""
         mass, damping, _ = self.machine.matrices(self.speed)
         weight = self.left.conj() @ (2.0 * self.value * mass + damping) @ self.right
         moved = -(self.left[places].conj() @ change @ self.right[places]) / weight

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def _rotor_words(rotor: Rotor | None) -> str:
-    """``rotor of 1200 kg per bearing``, ``Jeffcott rotor``; empty without one."""
+    """Return ``rotor of 1200 kg per bearing``, ``Jeffcott rotor``; empty without one."""
     if rotor is None:
         return ""
     if rotor.rigid_mass is not None:
@@ -36,7 +36,7 @@ def _rotor_words(rotor: Rotor | None) -> str:
 
 
 def verdict_word(growth_rate: float) -> str:
-    """``stable``, ``unstable`` or, where nothing damps or drives the rotor, ``undamped``."""
+    """Return ``stable``, ``unstable`` or, where nothing damps or drives the rotor, ``undamped``."""
     return "unstable" if growth_rate > 0.0 else "stable" if growth_rate < 0.0 else "undamped"
 
 
@@ -135,7 +135,7 @@ class StabilityCurve:
 def stability_curves(
     table: CoefficientTable, rotor: Rotor | float | None = None
 ) -> list[StabilityCurve]:
-    """Curves of every thermal model and clearance in `table`.
+    """Return curves of every thermal model and clearance in `table`.
 
     rotor : Rotor or float. A number is the mass of a rigid rotor per bearing [kg].
     """
@@ -207,7 +207,9 @@ def _thresholds(machine: Machine) -> tuple[float, ...]:
 
 
 def _eigenvalues(machine: Machine, speeds: Array) -> tuple[ComplexArray, Booleans]:
-    """Eigenvalues (n, k), each row by falling real part, undamped ones last; which those are.
+    """Return eigenvalues (n, k), each row by falling real part, undamped ones last.
+
+    Which those are.
 
     NaN where a support has no coefficients.
     """
@@ -233,7 +235,7 @@ class Campbell:
     thresholds: tuple[ThresholdSpeed, ...]
 
     def as_dict(self) -> dict[str, Any]:
-        """Plain data for JSON: every quantity over speed, branch by branch."""
+        """Return the plain data for JSON: every quantity over speed, branch by branch."""
         found = self.branches
         sense, whirl, undamped = found.whirl_sense, found.whirl, found.undamped
         return {
@@ -256,7 +258,7 @@ class Campbell:
 
 
 def campbell_curves(table: CoefficientTable, rotor: Rotor, count: int | None = 8) -> list[Campbell]:
-    """Campbell data of `rotor` on every curve of `table`.
+    """Return campbell data of `rotor` on every curve of `table`.
 
     count : Oscillating branches to keep, those of lowest frequency; None: all branches, also those
         that do not oscillate.

@@ -63,7 +63,7 @@ class _Chunk:
 def _solve_chunk(
     chunk: _Chunk, solve_case: Callable[..., Any] | None = None
 ) -> tuple[OperatingPoint, ...]:
-    """Points of one chunk; this is what travels to the workers.
+    """Return points of one chunk; this is what travels to the workers.
 
     Raises InputError: The chunk was made by another program than the one that is installed here.
     """
@@ -73,7 +73,7 @@ def _solve_chunk(
 
 
 def _along_speed(chunk: _Chunk, solve_case: Callable[..., Any] | None) -> Iterator[OperatingPoint]:
-    """Each speed starts from the last converged one; a failure costs its own point alone."""
+    """Solve each speed from the last converged one; a failure costs its own point alone."""
     if solve_case is None:
         from ..bearing.solve import solve_case as film_solver
 
@@ -95,7 +95,7 @@ def _along_speed(chunk: _Chunk, solve_case: Callable[..., Any] | None) -> Iterat
 def _result_or_failure(
     future: Future[tuple[OperatingPoint, ...]], chunk: _Chunk
 ) -> tuple[OperatingPoint, ...]:
-    """Points of a finished future; failed ones where its worker was lost."""
+    """Return points of a finished future; failed ones where its worker was lost."""
     try:
         return future.result()
     except InputError:
@@ -185,7 +185,7 @@ def sweep_points(
     resume: str | Path | None = None,
     solve_case: Callable[..., Any] | None = None,
 ) -> list[OperatingPoint]:
-    """Operating points of `cases` x `speeds`, case by case, each in the order of `speeds`.
+    """Return operating points of `cases` x `speeds`, case by case, each in the order of `speeds`.
 
     Parameters are those of `tabulate`; `solve_case` stands in for
     `rotorsim.bearing.solve.solve_case` (importable by name where the executor is another process).
@@ -247,7 +247,7 @@ def _computed(
     workers: int | None,
     solve_case: Callable[..., Any] | None,
 ) -> Generator[tuple[_Chunk, tuple[OperatingPoint, ...]], None, None]:
-    """Pairs of (part of) a chunk and its points, as they finish."""
+    """Return pairs of (part of) a chunk and its points, as they finish."""
     workers = min(workers or available_cores(), max(len(chunks), 1))
     if executor is not None:
         yield from _on_executor(chunks, executor, solve_case)
@@ -279,7 +279,7 @@ def _on_executor(
 
 
 def available_cores() -> int:
-    """Cores this process may use."""
+    """Return cores this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
@@ -386,13 +386,16 @@ def _parse(line: str) -> dict[str, Any]:
 
 
 def _case_digest(case: Case) -> str:
-    """Fingerprint of everything in `case`: the model objects print all their values in full."""
+    """Return fingerprint of everything in `case`.
+
+    The model objects print all their values in full.
+    """
     return hashlib.sha256(repr(case).encode()).hexdigest()[:24]
 
 
 @functools.cache
 def model_digest() -> str:
-    """Fingerprint of the program that computes a point: its source files, read once.
+    """Return the fingerprint of the program that computes a point: its source files, read once.
 
     Stricter than a version number, which a developer forgets to raise.
     """
@@ -428,7 +431,7 @@ _THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", 
 def _on_processes(
     chunks: Sequence[_Chunk], workers: int, solve_case: Callable[..., Any] | None
 ) -> Iterator[tuple[_Chunk, Points]]:
-    """Points of `chunks` as they finish, computed by `workers` processes.
+    """Return points of `chunks` as they finish, computed by `workers` processes.
 
     A process that dies (out of memory, say) takes the pool with it. What was in work is then done
     again speed by speed, one process at a time, so that only the point that kills its process is
@@ -452,7 +455,7 @@ def map_on_processes(
     workers: int,
     done: Callable[[int], None] | None = None,
 ) -> list[_Result]:
-    """Results of `function` on every item, in their order, computed by `workers` processes.
+    """Return results of `function` on every item, in their order, computed by `workers` processes.
 
     function : It and what it returns must be picklable.
     workers : 1 computes in this process.
@@ -481,7 +484,7 @@ def stream(
     executor: Executor | None = None,
     workers: int | None = None,
 ) -> Generator[_Result, None, None]:
-    """Results of `function` on every item as they come; few items are in work at a time.
+    """Return results of `function` on every item as they come; few items are in work at a time.
 
     executor, workers : As for `tabulate`.
     Raises Exception: What `function` raised, and `BrokenExecutor` where a process was lost.
@@ -571,7 +574,7 @@ def _start_worker(leash: Connection) -> None:
 
 
 def _end_with_parent(leash: Connection) -> None:
-    """Without this, the workers of a killed parent would wait for work for ever."""
+    """End with the parent: the workers of a killed one would wait for work for ever."""
     wait_for_any([leash])
     os._exit(1)
 
@@ -594,7 +597,7 @@ def _anonymous_main() -> Iterator[None]:
 
 @contextmanager
 def _one_thread_each() -> Iterator[None]:
-    """Libraries that start threads read their number when a worker loads them: one is enough."""
+    """Ask libraries that a worker loads for one thread, which they read as they are loaded."""
     added = [name for name in _THREAD_LIMITS if name not in os.environ]
     os.environ.update(dict.fromkeys(added, "1"))
     try:

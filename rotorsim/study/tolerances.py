@@ -70,13 +70,13 @@ class _Threshold(ABC):
 
     @abstractmethod
     def films(self, sample: Mapping[str, float]) -> tuple[_Solve, _Assemble]:
-        """How a sample is solved at ascending speeds [rad/s], and the machine on what comes of it.
+        """Return how a sample is solved at ascending speeds [rad/s], and its machine.
 
         Solving raises SampleError: A film or the static equilibrium did not converge.
         """
 
     def __call__(self, sample: Mapping[str, float]) -> dict[str, float | None]:
-        """Thresholds of one sample.
+        """Return thresholds of one sample.
 
         Returns: ``growth_rate`` at the operating speed [1/s], above 0 where unstable;
             ``threshold_speed`` [rad/s], the lowest at which the rotor loses its stability, None
@@ -114,7 +114,7 @@ def _crossings(assemble: _Assemble, states: Mapping[float, Any]) -> list[Thresho
 
 
 def _growth(machine: Machine, speed: float) -> float:
-    """Growth rate of the least stable mode [1/s]."""
+    """Return the growth rate of the least stable mode [1/s]."""
     found = machine_spectrum(machine, np.array([speed]))(speed)
     return math.nan if found is None else found.leading.real
 
@@ -133,7 +133,7 @@ class _FilmThreshold(_Threshold):
     speeds: tuple[float, ...]
 
     def films(self, sample: Mapping[str, float]) -> tuple[_Solve, _Assemble]:
-        """One film; a sample has the names of a scenario's ``[tolerances]``, SI."""
+        """Return one film; a sample has the names of a scenario's ``[tolerances]``, SI."""
         from ..bearing.solve import solve_case
 
         case = changed(self.case, {_INPUTS[name]: value for name, value in sample.items()})
@@ -167,7 +167,7 @@ class _MachineThreshold(_Threshold):
     speeds: tuple[float, ...]
 
     def films(self, sample: Mapping[str, float]) -> tuple[_Solve, _Assemble]:
-        """All films of the machine."""
+        """Return all films of the machine."""
         variant = Variant(self.machine)
         for name, value in sample.items():
             variant = self.parameters[name].applied(variant, value)
@@ -212,7 +212,7 @@ def _swept_here(cases: list[Case], speeds: list[float]) -> list[OperatingPoint]:
 
 
 def _support(points: Mapping[float, OperatingPoint]) -> Support:
-    """Film of one or more speeds, with its pads."""
+    """Return the film of one or more speeds, with its pads."""
     from ..bearing.interpolation import CoefficientInterpolator
 
     ordered = [points[speed] for speed in sorted(points)]
@@ -362,7 +362,7 @@ def _of_machine(
 
 
 def _tolerances_of(case: Case, settings: ToleranceSettings) -> dict[str, Tolerance]:
-    """Distributions about the nominal values of `case`; viscosity as a factor about 1."""
+    """Return distributions about the nominal values of `case`; viscosity as a factor about 1."""
     nominal = {
         "radial_clearance": case.bearing.radial_clearance,
         "viscosity": 1.0,
@@ -385,7 +385,7 @@ def _tolerances_of(case: Case, settings: ToleranceSettings) -> dict[str, Toleran
 def _tolerance(
     nominal: float, spread: Spread, kind: str, key: str, unsigned: bool = True
 ) -> Tolerance:
-    """Distribution about a nominal value, which an `unsigned` one keeps above zero."""
+    """Return the distribution about a nominal value, which an `unsigned` one keeps above zero."""
     size = spread.absolute(nominal)
     if not size > 0.0:
         raise InputError("must be a value with its unit: the nominal one is 0", key=key)
@@ -403,7 +403,7 @@ def _operating_speed(scenario: Scenario) -> float:
 
 
 def _search_speeds(speeds: Array, operating_speed: float) -> tuple[float, ...]:
-    """Speeds of the file's range; half to one and a half times a single one."""
+    """Return speeds of the file's range; half to one and a half times a single one."""
     low, high = float(speeds[0]), float(speeds[-1])
     if not high > low:
         low, high = 0.5 * operating_speed, 1.5 * operating_speed
@@ -414,7 +414,7 @@ def _search_speeds(speeds: Array, operating_speed: float) -> tuple[float, ...]:
 def _mapper(
     executor: Executor | None, workers: int | None, progress: Callable[[int, int], None] | None
 ) -> Callable:
-    """``map`` on the executor, or on this machine's processes, a few samples at a time."""
+    """Return ``map`` on the executor, or on this machine's processes, a few samples at a time."""
     if executor is not None:
         if workers is not None:
             raise InputError("not together with an executor", key="workers", value=workers)

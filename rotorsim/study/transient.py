@@ -93,7 +93,7 @@ class Transient:
         return eigenvalues(stiffness, damping, self.rotor_mass).real.max(axis=-1)
 
     def moments(self) -> dict[str, int]:
-        """Places of the moments of least clearance, least film and least stability."""
+        """Return places of the moments of least clearance, least film and least stability."""
         found = {
             "least_clearance": self.clearance,
             "least_film": self.values("min_film_thickness"),
@@ -260,7 +260,7 @@ def conditions_of(
 
 
 def _unfed(case: Case) -> Any:
-    """The bearing without pressure in its grooves, their own oil gone."""
+    """Return the bearing without pressure in its grooves, their own oil gone."""
     grooves = tuple(
         replace(groove, supply_pressure=0.0, supply_temperature=None, restrictor=None)
         for groove in case.bearing.grooves

@@ -78,7 +78,7 @@ def _settled_pads(scenario: Scenario, tables: _Tables) -> Scenario:
 
 
 def stand_by_load(table: Mapping[str, Any]) -> bool:
-    """Whether the pads of a table ``[bearing]`` stand by the load: no pivot has an angle."""
+    """Return whether the pads of a table ``[bearing]`` stand by the load: no pivot has an angle."""
     pads = [table.get("pads", {}), *table.get("pad", [])]
     return not any("pivot_angle" in pad for pad in pads)
 
@@ -375,7 +375,7 @@ _LEAST_CELLS = 2
 
 
 def _check_grooves(bearing: Bearing, mesh: MeshSize) -> None:
-    """Grooves apart from each other, film between them, cells enough for both."""
+    """Check that grooves are apart, with film between them, and have cells enough."""
     cell = FULL_TURN / mesh.circumferential
     covered = sum(groove.extent for groove in bearing.grooves)
     if covered >= FULL_TURN - _LEAST_CELLS * cell:
@@ -428,7 +428,7 @@ def _check_cells(extent: float, mesh: MeshSize, key: str, name: str) -> None:
 
 
 def _check_arcs(bearing: Bearing) -> None:
-    """Arcs must not overlap, and only a groove may stand between two of them."""
+    """Check that arcs do not overlap, with nothing but a groove between two of them."""
     if not bearing.arcs:
         return
     order = sorted(range(len(bearing.arcs)), key=lambda i: bearing.arcs[i].start % FULL_TURN)
@@ -454,7 +454,7 @@ def _check_arcs(bearing: Bearing) -> None:
 
 
 def _in_groove(bearing: Bearing, start: float, extent: float) -> bool:
-    """Whether one full-length groove covers the opening."""
+    """Return whether one full-length groove covers the opening."""
     for groove in bearing.grooves:
         if not bearing.spans_length(groove):
             continue
@@ -477,7 +477,7 @@ def _check_tilt(bearing: Bearing, eccentricity_ratio: float | None) -> None:
 
 
 def _reach(bearing: Bearing) -> float:
-    """Largest eccentricity ratio that any position within the lobes has (1 for a plain bore)."""
+    """Return the largest eccentricity ratio within the lobes (1 for a plain bore)."""
     theta = np.linspace(0.0, FULL_TURN, 720, endpoint=False)
     bore = np.ones_like(theta)
     for arc in bearing.arcs:

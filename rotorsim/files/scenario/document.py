@@ -17,7 +17,7 @@ _MAX_NESTING = 50
 
 
 def read_text(path: str | Path) -> str:
-    """Text of a scenario file, lines ended by a line feed: its hash is the same everywhere.
+    """Return text of a scenario file, lines ended by a line feed: its hash is the same everywhere.
 
     Raises ScenarioError: No such file, not a file, a file of another kind, too large, not UTF-8,
         not readable.
@@ -51,7 +51,7 @@ def read_text(path: str | Path) -> str:
 
 
 def _similar(path: Path) -> str:
-    """Files of nearly that name beside it."""
+    """Return files of nearly that name beside it."""
     if not path.parent.is_dir():
         return f"; nor is there a directory {path.parent}"
     names = [entry.name for entry in path.parent.glob("*.toml") if entry.name != path.name]
@@ -68,7 +68,7 @@ def _similar(path: Path) -> str:
 
 
 def parse_toml(text: str, source: str) -> dict[str, Any]:
-    """Entries of a TOML text.
+    """Return entries of a TOML text.
 
     Raises ScenarioError: Not TOML, with the line; or nested beyond sense.
     """
@@ -87,7 +87,10 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
 
 
 def _is_deep_key(line: str) -> bool:
-    """Whether a dotted key or header is absurdly deep (reading such takes quadratic time)."""
+    """Return whether a dotted key or header is absurdly deep.
+
+    Reading such takes quadratic time.
+    """
     *keys, rest = line.split("=")
     if not keys and rest.lstrip().startswith("["):
         keys = [rest]
@@ -146,7 +149,7 @@ def _of_repetition(line: str) -> str:
 
 
 def _of_number(before: str, behind: str) -> str:
-    """Advice on decimal commas and on units without quotes."""
+    """Return advice on decimal commas and on units without quotes."""
     number = _NUMBER_BEFORE.search(before)
     if number is None:
         return ""
@@ -164,7 +167,7 @@ def _of_number(before: str, behind: str) -> str:
 
 
 def _of_value(line: str, behind: str, message: str) -> str:
-    """Advice on what stands, or fails to stand, for a value."""
+    """Return advice on what stands, or fails to stand, for a value."""
     if message.startswith("Illegal character") and line.count('"') % 2:
         return f"a closing quote is missing: {_EXAMPLE}"
     if not message.startswith("Invalid value"):
@@ -180,7 +183,7 @@ def _of_value(line: str, behind: str, message: str) -> str:
 
 
 def _of_structure(message: str) -> str:
-    """Advice on brackets, equals signs and lines."""
+    """Return advice on brackets, equals signs and lines."""
     if message.startswith("Expected '='"):
         return f"key and value have an equals sign between them: {_EXAMPLE}"
     if "end of a table declaration" in message or "end of an array declaration" in message:

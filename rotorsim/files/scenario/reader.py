@@ -268,14 +268,14 @@ class Reader:
 
 
 def _member(members: tuple[Any, ...], value: Any) -> Any:
-    """Member of a union that a value is meant as: a table is a dataclass."""
+    """Return the member of a union that a value is meant as: a table is a dataclass."""
     tables = [member for member in members if is_dataclass(parts(member)[0])]
     others = [member for member in members if member not in tables]
     return (tables if isinstance(value, dict) and tables else others)[0]
 
 
 def _place(path: _Path, index: int, value: Any) -> _Path:
-    """Path of an entry of a list; one value may stand for a list of one."""
+    """Return the path of an entry of a list; one value may stand for a list of one."""
     return (*path, index) if isinstance(value, list) else path
 
 
@@ -316,7 +316,7 @@ def makers_of(root: Callable[..., Any]) -> dict[tuple[str, ...], tuple[Callable[
 
 
 def _made_in(hint: Any) -> Iterator[Made]:
-    """Tables that may stand for a value."""
+    """Return tables that may stand for a value."""
     bare, marks, members = parts(hint)
     made = [mark for mark in marks if isinstance(mark, Made)]
     if made or any(isinstance(mark, Leaf) for mark in marks):
@@ -361,7 +361,7 @@ def _under(tables: Any, part: str | int) -> Any:
 
 
 def _dotted(path: _Path) -> str:
-    """``bearing.groove[1].center``."""
+    """Return ``bearing.groove[1].center``."""
     text = ""
     for part in path:
         text += f"[{part}]" if isinstance(part, int) else (f".{part}" if text else str(part))
@@ -369,13 +369,13 @@ def _dotted(path: _Path) -> str:
 
 
 def _location(key: str) -> _Path:
-    """Parts of a dotted key, the inverse of `_dotted`."""
+    """Return parts of a dotted key, the inverse of `_dotted`."""
     divided = key.replace("]", "").replace("[", ".").split(".")
     return tuple(int(part) if part.isdigit() else part for part in divided if part)
 
 
 def _within(path: _Path, key: str | None) -> _Path:
-    """Path of what an object, made of the table at `path`, complains of.
+    """Return the path of what an object, made of the table at `path`, complains of.
 
     It names a field of its own, or one from the top, such as ``bearing.groove[1].length``.
     """

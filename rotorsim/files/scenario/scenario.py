@@ -222,7 +222,7 @@ class Scenario:
         radial_clearance: float | None = None,
         thermal_model: ThermalModel | str | None = None,
     ) -> Case:
-        """One bearing with one thermal model; what leaves no choice may be omitted.
+        """Return one bearing with one thermal model; what leaves no choice may be omitted.
 
         Parameters
         ----------
@@ -248,7 +248,7 @@ class Scenario:
         )
 
     def cases(self) -> Iterator[Case]:
-        """Every case: thermal model by thermal model, each with all clearances."""
+        """Return every case: thermal model by thermal model, each with all clearances."""
         for model in self.thermal_models:
             for clearance in self.radial_clearances:
                 yield self.case(clearance, model)
@@ -357,7 +357,7 @@ def _changed_text(text: str, root: Any, changes: Mapping[str, object]) -> str:
 
 
 def _path(root: Any, name: str) -> tuple[str, ...]:
-    """Table and key of a name, with or without its table."""
+    """Return the table and key of a name, with or without its table."""
     tables = tables_of(root)
     *table, key = str(_ALSO.get(name, name)).split(".")
     if not table and key in tables[()]:
@@ -371,7 +371,7 @@ def _path(root: Any, name: str) -> tuple[str, ...]:
 
 
 def entry_kind(root: Any, name: str) -> tuple[str, str | None]:
-    """Key of an entry with its table, and its kind of quantity (None: a plain number).
+    """Return the key of an entry with its table, and its kind of quantity (None: a plain number).
 
     Raises InputError: There is no such entry.
     """
@@ -401,7 +401,7 @@ def _written(value: Any, entry: Entry | None, name: str) -> Any:
 
 
 def _kind(entry: Entry) -> str | None:
-    """Kind of quantity of an entry."""
+    """Return the kind of quantity of an entry."""
     marks = [mark for mark in marks_of(entry.hint) if isinstance(mark, (Quantity, Leaf))]
     return marks[0].kind if marks else None
 
@@ -420,7 +420,7 @@ def _line(key: str, value: Any) -> str:
 
 
 def _key(name: str) -> str:
-    """Key as TOML has it: in quotes where it holds a dot."""
+    """Return the key as TOML has it: in quotes where it holds a dot."""
     return json.dumps(name, ensure_ascii=False) if "." in name else name
 
 

@@ -219,7 +219,7 @@ def _supplied(
     full: Booleans,
     starved: Booleans,
 ) -> tuple[MixedFactor | BorderedFactor, Array, Array]:
-    """Factor, unknowns, and the fraction that each opening could fill of its pad's leading edge."""
+    """Return factor, unknowns, and what each opening could fill of its pad's edge."""
     bordered: MixedFactor | BorderedFactor = factor
     found = np.zeros(0)
     if starved.any():
@@ -234,7 +234,7 @@ def _supplied(
 
 
 def _carried_fraction(operator: FilmOperator, liquid: Array) -> Array:
-    """Liquid fraction that the Couette flow carries through the west and east faces, (2, n, m)."""
+    """Return liquid fraction carried through the west and east faces, (2, n, m)."""
     west = np.where(operator.interior[0], np.roll(liquid, 1, axis=0), 1.0)
     return np.stack([west, liquid])
 
@@ -252,7 +252,10 @@ def _worst_changes(full: Booleans, update: Booleans, unknown: Array) -> Booleans
 def _mixed_system(
     operator: FilmOperator, full: Booleans, rate: Array, filled: Array
 ) -> tuple[MixedFactor, Array]:
-    """Factor and right-hand side; `filled` (n,) is the fraction that enters at open first faces."""
+    """Return factor and right-hand side.
+
+    `filled` (n,) is the fraction that enters at open first faces.
+    """
     everything = np.ones_like(full)
     order, folded = column_order(operator.interior, everything)
     m = full.shape[1]

@@ -74,7 +74,10 @@ class Recesses:
         )
 
     def given(self, pressure: Array) -> tuple[Array, Array]:
-        """What the restrictors let in [m3/s], and its change with the pressures, (g,) each."""
+        """Return what the restrictors let in [m3/s], and its change with the pressures.
+
+        Shape (g,) each.
+        """
         both = [
             restrictor.flow(float(before), float(p), float(viscosity), self.density)
             for restrictor, before, p, viscosity in zip(

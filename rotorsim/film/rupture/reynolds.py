@@ -72,7 +72,10 @@ def _coarse_guess(operator: FilmOperator, source: Array) -> Booleans:
 
 
 def _coarsened(operator: FilmOperator) -> FilmOperator:
-    """The operator on pairs of cells: faces in a row carry together, over twice the distance."""
+    """Return the operator on pairs of cells.
+
+    Faces in a row carry together, over twice the distance.
+    """
 
     def outer_faces(field: NDArray[Any]) -> tuple[NDArray[Any], ...]:
         return field[0, 0::2], field[1, 1::2], field[2, :, 0::2], field[3, :, 1::2]

@@ -49,7 +49,10 @@ class OilSupply:
         return np.where(self.groove < 0, np.roll(self.groove, -1), -1)
 
     def filled(self, starved: Booleans) -> Array:
-        """Fraction of each column's first face that is full whatever arrives, (n,): 1 or 0."""
+        """Return fraction of each column's first face that is full whatever arrives, (n,).
+
+        1 or 0.
+        """
         return np.where((self._leading >= 0) & starved[self._leading], 0.0, 1.0)
 
     def carried(self, fractions: Array) -> Array:
@@ -57,7 +60,9 @@ class OilSupply:
         return np.where(self._leading >= 0, fractions[self._leading], 1.0)
 
     def balance(self, operator: FilmOperator, full: Booleans) -> tuple[Array, Array, Array]:
-        """Demand D (g,) [m3/s], and what comes back: weights of the unknowns, (g, n, m), and rest.
+        """Return demand D (g,) [m3/s], and what comes back.
+
+        Weights of the unknowns, (g, n, m), and rest.
 
         The unknowns are the pressures in full cells, liquid fractions in others.
         """
@@ -91,7 +96,7 @@ class OilSupply:
         self, factor: BorderedFactor, right: Array, operator: FilmOperator, full: Booleans,
         starved: Booleans,
     ) -> tuple[Array, Array]:  # fmt: skip
-        """Solution of the film, and the fractions (s,) that enter behind the `starved` openings."""
+        """Return the film's solution, and the fractions (s,) behind the `starved` openings."""
         _, _, rest = self.balance(operator, full)
         right = right.copy()
         right[factor.cells.any(axis=0)] = 0.0

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 
 def coefficients_over_speed(table: CoefficientTable, title: str = "") -> Figure:
-    """The eight coefficients against speed: line style by model, marker by clearance."""
+    """Return the eight coefficients against speed: line style by model, marker by clearance."""
     figure, axes = new_axes(2, 4, (11.5, 5.2), title, sharex=True)
     clearances = table.dataset["radial_clearance"].values.astype(float)
     for row, (symbol, unit) in enumerate((("K", "MN/m"), ("C", "kN s/m"))):
@@ -52,7 +52,7 @@ def coefficients_over_speed(table: CoefficientTable, title: str = "") -> Figure:
 def thresholds_over_speed(
     curves: Sequence[StabilityCurve], rotor_mass: float | None = None, title: str = ""
 ) -> Figure:
-    """Critical mass (logarithmic) and whirl frequency ratio against speed."""
+    """Return the critical mass (logarithmic) and whirl frequency ratio against speed."""
     figure, axes = new_axes(1, 2, (9.0, 3.8), title)
     left, right = axes[0]
     clearances = np.array([curve.choices["radial_clearance"] for curve in curves])
@@ -81,7 +81,7 @@ def thresholds_over_speed(
 
 
 def _look(model: str, clearance: float, clearances: Array, size: int) -> dict[str, object]:
-    """Line of one curve: narrower clearances darker, so that they stay apart in grey."""
+    """Return the line of one curve: narrower clearances darker, so that they stay apart in grey."""
     known = np.unique(clearances)
     number = int(np.searchsorted(known, clearance))
     return {
@@ -102,7 +102,9 @@ def _legend_below(figure: Figure, ax: Axes) -> None:
 def bearing_drawing(
     point: OperatingPoint, journal_radius: float, title: str = "", ax: Axes | None = None
 ) -> Figure:
-    """Cross-section at mid-plane, load down: journal where it is, oil in its temperature, pressure.
+    """Return cross-section at mid-plane, load down.
+
+    Journal where it is, oil in its temperature, pressure.
 
     Diameters are to scale among each other; the film is magnified by the factor that the picture
     names. Pressure is the shaded line outside the bore.
@@ -123,7 +125,10 @@ def bearing_drawing(
     top = max(float(film.pressure[:, middle].max()), 1e-30)
 
     def place(radial: Array, angle: Array) -> Array:
-        """Points of the picture, x (load) down and y to the right, from the journal's centre."""
+        """Return points of the picture, x (load) down and y to the right.
+
+        From the journal's centre.
+        """
         x, y = centre[0] + radial * np.cos(angle), centre[1] + radial * np.sin(angle)
         return np.column_stack([y, -x]) / radius
 
@@ -180,13 +185,13 @@ def _arrow(ax: Axes, start: Array, way: tuple[float, float], label: str) -> None
 
 
 def _gaps(theta: Array) -> list[int]:
-    """Cells with which a new film begins: behind a groove or between pads."""
+    """Return cells with which a new film begins: behind a groove or between pads."""
     steps = np.diff(theta)
     return [int(k) + 1 for k in np.flatnonzero(steps > 2.5 * np.median(steps))]
 
 
 def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
-    """Contours over angle and axial position: one row per film, pressure and temperature.
+    """Return contours over angle and axial position: one row per film, pressure and temperature.
 
     All films share one scale, so that colours may be compared.
 
@@ -219,7 +224,7 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
 
 
 def film_profiles(points: Sequence[OperatingPoint], title: str = "") -> Figure:
-    """Pressure and temperature around the bearing at mid-plane, all films in one picture."""
+    """Return pressure and temperature around the bearing at mid-plane, all films in one picture."""
     films = [_fields(point) for point in points]
     heat = [_mean_temperature(film) for film in films]
     warm = any(values is not None for values in heat)
@@ -269,7 +274,7 @@ def _contours(
 
 
 def _mark_turbulence(ax: Axes, film: FilmFields) -> None:
-    """Dots where the film is in transition, crosses where it is turbulent."""
+    """Return dots where the film is in transition, crosses where it is turbulent."""
     if not film.turbulence.max() > 0.0:
         return
     angle, order = _angles(film.theta)
@@ -297,7 +302,10 @@ def _pressure(film: FilmFields) -> Array:
 
 
 def _mean_temperature(film: FilmFields) -> Array | None:
-    """Mean across the film, (n, m), in the unit shown; None where the film has one temperature."""
+    """Return mean across the film, (n, m), in the unit shown.
+
+    None where the film has one temperature.
+    """
     mean = film.temperature.mean(axis=2) - ZERO_CELSIUS
     return np.asarray(in_shown_unit(mean, "°C")) if np.ptp(mean) > 1e-6 else None
 

@@ -49,7 +49,7 @@ _SHAFT, _SLEEVE, _DISC, _SUPPORT, _SEAL = "#d9dde2", "#eef0f2", "#8fa3b5", "#D55
 
 
 def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None) -> Figure:
-    """Rotor to scale: sections, discs, added masses, bearings, seals, probes, clearances."""
+    """Return rotor to scale: sections, discs, added masses, bearings, seals, probes, clearances."""
     beam = machine.rotor.beam
     ax = axes_or_new(ax, (8.2, 3.6))
     top = max(s.outer_diameter for s in beam.sections) / 2.0
@@ -116,7 +116,7 @@ def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
 
 
 def disc_size(disc: Disc, beam: Beam) -> tuple[float, float]:
-    """Radius and width [m] of a steel disc with the same mass and polar inertia on the shaft."""
+    """Return radius and width [m] of a steel disc of the same mass and polar inertia."""
     shaft = _radius(beam, disc.at)
     outer = np.sqrt(max(2.0 * disc.polar_inertia / disc.mass - shaft**2, 1.2 * shaft**2))
     area = np.pi * (outer**2 - shaft**2)
@@ -142,7 +142,7 @@ def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
 
 
 def _radius(beam: Beam, at: float) -> float:
-    """Outer radius of the shaft at a place [m], the larger one at a step."""
+    """Return the outer radius of the shaft at a place [m], the larger one at a step."""
     radii = []
     for section in beam.sections:
         left, right = beam.span(section)
@@ -152,7 +152,7 @@ def _radius(beam: Beam, at: float) -> float:
 
 
 def _outermost(beam: Beam, at: float) -> float:
-    """Outer radius of the shaft and its discs at a place [m]."""
+    """Return the outer radius of the shaft and its discs at a place [m]."""
     found = _radius(beam, at)
     for disc in beam.discs:
         if disc.polar_inertia > 0.0 and disc.mass > 0.0:
@@ -167,7 +167,7 @@ def _label(ax: Axes, x: float, y: float, text: str, color: str, vertical: str) -
 
 
 def _key(ax: Axes, machine: MachineFile) -> None:
-    """Legend of what the file has, below the drawing."""
+    """Return the legend of what the file has, below the drawing."""
     ax.plot([], [], "^", mfc="w", mec=_SUPPORT, ms=8, ls="", label="bearing")
     if machine.seal:
         ax.plot([], [], color=_SEAL, lw=3.0, label="seal")
@@ -189,7 +189,7 @@ def machine_campbell(
     title: str = "",
     ax: Axes | None = None,
 ) -> Figure:
-    """Damped frequencies over speed by sense of whirl, with the synchronous line.
+    """Return the damped frequencies over speed by sense of whirl, with the synchronous line.
 
     Modes with a damping ratio above 0.707 are left out; where a mode grows it is drawn thick.
     """
@@ -247,7 +247,7 @@ def _mark_range(ax: Axes, continuous: tuple[float, float] | None) -> None:
 def mode_shapes(
     rotor: Rotor, found: Modes, speed: float, count: int = 6, title: str = ""
 ) -> Figure:
-    """Lowest modes in space at the speed nearest to `speed` [rad/s]: orbits and centre line.
+    """Return lowest modes in space at the speed nearest to `speed` [rad/s]: orbits and centre line.
 
     Modes with a damping ratio above 0.707 are left out.
     """
@@ -269,7 +269,7 @@ def mode_shapes(
 def mode_shape(
     rotor: Rotor, found: Modes, index: int, branch: int, title: str = "", ax: Any = None
 ) -> Figure:
-    """One mode in space: the orbits of the nodes and the centre line at one instant.
+    """Return one mode in space: the orbits of the nodes and the centre line at one instant.
 
     rotor : With positions of its nodes.
     index, branch : Of the speed and of the mode in `found`.
@@ -312,7 +312,7 @@ def bode_at_probes(
     title: str = "",
     ax: tuple[Axes, Axes] | None = None,
 ) -> Figure:
-    """Amplitude and phase lag at probes over speed, with the peaks' amplification factors.
+    """Return amplitude and phase lag at probes over speed, with the peaks' amplification factors.
 
     ax : (Axes, Axes). For the amplitude and for the phase.
     """
@@ -355,7 +355,7 @@ def critical_speed_chart(
     title: str = "",
     ax: Axes | None = None,
 ) -> Figure:
-    """Undamped critical speeds over support stiffness, with the bearings' own stiffness.
+    """Return the undamped critical speeds over support stiffness, with the bearings' own stiffness.
 
     principal : mapping of str to (n, 2) array. Principal stiffnesses of each support over `speeds`
         [N/m].
@@ -390,7 +390,7 @@ def growth_over_speed(
     title: str = "",
     ax: Axes | None = None,
 ) -> Figure:
-    """Growth rates of the oscillating modes over speed, one colour for each thermal model.
+    """Return growth rates of the oscillating modes over speed, one colour for each thermal model.
 
     Modes of frequencies up to twice the highest speed; the least stable one is drawn thick.
     """
@@ -429,7 +429,7 @@ def growth_over_speed(
 
 
 def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str = "") -> Figure:
-    """Displacement at the first sensor without and with control, and its actuator's force."""
+    """Draw displacement at the first sensor without and with control, and the force."""
     figure, axes = new_axes(2, 1, (6.6, 5.0), title, sharex=True)
     upper, lower = axes[:, 0]
     reach = 1.3 * np.abs(controlled.displacement[:, 0]).max() * MICRO
@@ -455,7 +455,7 @@ def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str =
 def decrement_over_stiffness(
     curves: Sequence[DecrementCurve], title: str = "", ax: Axes | None = None
 ) -> Figure:
-    """Logarithmic decrement over destabilising stiffness, with Q_A, Q0 and the limit of level I."""
+    """Draw logarithmic decrement over destabilising stiffness, Q_A, Q0, limit of level I."""
     ax = axes_or_new(ax, (6.2, 3.8))
     for number, one in enumerate(curves):
         look = series_style("", number)

@@ -51,7 +51,7 @@ def stability_map(
     title: str = "",
     ax: Axes | None = None,
 ) -> Figure:
-    """Plane of two inputs: stable, unstable, and what only heating makes unstable.
+    """Return the plane of two inputs: stable, unstable, and what only heating makes unstable.
 
     Parameters
     ----------
@@ -137,14 +137,14 @@ _FINE = 240
 
 
 def _finer(values: Array) -> Array:
-    """Values with equal steps between every two, so that there are about `_FINE`."""
+    """Return values with equal steps between every two, so that there are about `_FINE`."""
     steps = -(-_FINE // (values.size - 1))
     place = np.arange(steps * (values.size - 1) + 1) / steps
     return np.interp(place, np.arange(values.size), values)
 
 
 def _bilinear(chart: xr.Dataset, x: str, y: str, model: str, along: Array, across: Array) -> Array:
-    """Growth rates of one model between; NaN only within cells of which a corner is NaN."""
+    """Return growth rates of one model between; NaN only within cells of which a corner is NaN."""
     values = chart["growth_rate"].sel(thermal_model=model).transpose(x, y).values
     for axis, (name, wanted) in enumerate(((x, along), (y, across))):
         nodes = chart[name].values

@@ -77,7 +77,7 @@ def orbit_plot(
 def spectrum_cascade(
     cascade: Cascade, title: str = "", ax: Axes | None = None, most: int = 40
 ) -> Figure:
-    """Spectra stacked by speed, at most about `most` of them."""
+    """Return the spectra stacked by speed, at most about `most` of them."""
     order = np.argsort(cascade.speed)
     speed, frequency, amplitude = (
         values[order] for values in (cascade.speed, cascade.frequency, cascade.amplitude)
@@ -111,7 +111,7 @@ def spectrum_cascade(
 
 
 def spectrum_plot(orbits: Sequence[Orbit], title: str = "") -> Figure | None:
-    """Spectra of runs at constant speed, the shaft's frequency and half of it marked.
+    """Return the spectra of runs at constant speed, the shaft's frequency and half of it marked.
 
     None where no run has one: each comes to rest, passes through the speeds, or is too short.
     """
@@ -152,7 +152,7 @@ def bode_plot(
     quantity: str = "receptance [m/N]",
     title: str = "",
 ) -> Figure:
-    """Magnitude and phase against frequency.
+    """Return the magnitude and phase against frequency.
 
     frequency : (n,) array [rad/s]
     responses : sequence of (name, (n,) complex array)
@@ -179,7 +179,7 @@ def _draw_contact(ax: Axes, orbit: Orbit) -> float:
 
 
 def _draw(ax: Axes, orbit: Orbit, name: str, steady_only: bool) -> None:
-    """Trajectory, the steady part strong over the transient, and its points at whole turns."""
+    """Draw the path, its steady part strong, and its points at whole turns."""
     x, y = orbit.x * MICRO, orbit.y * MICRO
     start = (recognise(orbit).steady_from if orbit.constant_speed else None) or 0
     if start and not steady_only:
@@ -195,12 +195,12 @@ def _draw(ax: Axes, orbit: Orbit, name: str, steady_only: bool) -> None:
 
 
 def _model(name: str) -> str:
-    """Thermal model of a run, by which it is coloured."""
+    """Return the thermal model of a run, by which it is coloured."""
     return next((model for model in MODEL_STYLES if name.startswith(model)), name)
 
 
 def branch_plot(branch: Branch, title: str = "", ax: Axes | None = None) -> Figure:
-    """Amplitude of periodic motions over speed, the unstable ones dashed, threshold and folds."""
+    """Draw amplitude of periodic motions over speed, threshold and folds."""
     ax = axes_or_new(ax, (6.4, 4.4))
     rpm = branch.speed * RPM
     for column, name in enumerate(branch.names):
@@ -336,7 +336,7 @@ def animate_machine(
 
 
 def can_write_mp4() -> bool:
-    """Whether ffmpeg is there."""
+    """Return whether ffmpeg is there."""
     return shutil.which("ffmpeg") is not None
 
 
@@ -371,7 +371,7 @@ class _Scene:
         self._below(below)
 
     def frames(self, slow_only: bool) -> NDArray[np.intp]:
-        """Sample shown in each frame."""
+        """Return the sample shown in each frame."""
         count = self.orbit.t.size
         turns = _SLOW_FRAMES / _SLOW_FRAMES_PER_REVOLUTION
         first = max(float(self.orbit.revolutions[-1]) - turns, float(self.orbit.revolutions[0]))

@@ -25,7 +25,7 @@ _DRAWN_CLEARANCE = 0.25
 
 
 def pad_sections(points: Sequence[OperatingPoint], bearing: Bearing, title: str = "") -> Figure:
-    """Sections at mid-plane, a row for each film: pressure, and temperature where it varies.
+    """Return sections at mid-plane, a row for each film: pressure, and temperature where it varies.
 
     Pads stand as they are tilted, the clearance drawn far too large; the load points down, the
     shaft turns counter-clockwise.
@@ -104,7 +104,7 @@ class _Section:
         return film
 
     def _cells(self, pad: Pad) -> tuple[Array, NDArray[np.intp]]:
-        """Angles between the cells of a pad (k + 1,), and the cells' places (k,)."""
+        """Return angles between the cells of a pad (k + 1,), and the cells' places (k,)."""
         turned = (self.film.theta - pad.leading_edge) % (2.0 * np.pi)
         inside = np.flatnonzero(turned < pad.arc)
         inside = inside[np.argsort(turned[inside])]
@@ -139,7 +139,7 @@ def _unit(theta: Array) -> Array:
 
 
 def _seen(points: Array) -> Array:
-    """From x, y to the picture's right and up: y to the right, x down."""
+    """Turn x, y to the picture's right and up: y to the right, x down."""
     return np.stack([points[..., 1], -points[..., 0]], axis=-1)
 
 

@@ -21,7 +21,10 @@ Array = NDArray[np.float64]
 
 
 def eigenvalue_plot(curves: Sequence[Campbell], title: str = "", ax: Axes | None = None) -> Figure:
-    """Upper half of the complex plane: branches over speed, open at first, filled at last."""
+    """Return upper half of the complex plane.
+
+    Branches over speed, open at first, filled at last.
+    """
     ax = axes_or_new(ax, (6.2, 4.6))
     every = [values[np.isfinite(values)] for values in (c.branches.eigenvalues for c in curves)]
     highest = max(float(np.abs(values.imag).max(initial=1e-3)) for values in every)
@@ -66,7 +69,7 @@ def eigenvalue_plot(curves: Sequence[Campbell], title: str = "", ax: Axes | None
 
 
 def _threshold_label(curve: Campbell) -> str:
-    """Model, and at which speed the first of its modes turns unstable."""
+    """Return the model, and at which speed the first of its modes turns unstable."""
     label = model_label(curve.choices["thermal_model"])
     if not curve.thresholds:
         return label
@@ -82,7 +85,7 @@ def campbell_diagram(
     title: str = "",
     ax: Axes | None = None,
 ) -> Figure:
-    """Damped frequency against speed with lines of synchronous and half-frequency whirl.
+    """Return the damped frequency against speed with lines of synchronous and half-frequency whirl.
 
     Where a branch grows (positive real part) it is drawn thick.
     """
@@ -123,7 +126,9 @@ def campbell_diagram(
 def _with_crossings(
     speed: Array, branch: NDArray[np.complex128], thresholds: Sequence[ThresholdSpeed]
 ) -> tuple[Array, NDArray[np.complex128]]:
-    """A branch with points where it turns unstable or back: growth begins there, not at a knot.
+    """Return a branch with points where it turns unstable or back.
+
+    Growth begins there, not at a knot.
 
     A threshold at about the branch's frequency is taken as it is; a branch that crosses elsewhere
     (another one is unstable already) is interpolated.
@@ -152,7 +157,7 @@ _SENSES = (("^", "whirls forward", 1.0), ("v", "whirls backward", -1.0))
 
 
 def _mark_whirl(ax: Axes, curve: Campbell) -> None:
-    """Triangles along the branches for the sense of whirl, crosses at the thresholds."""
+    """Return triangles along the branches for the sense of whirl, crosses at the thresholds."""
     colour = model_style(curve.choices["thermal_model"])["color"]
     values, rpm = curve.branches.eigenvalues, curve.branches.parameter * RPM
     hertz = np.where(values.imag > 0.0, values.imag, np.nan) / (2 * np.pi)
@@ -169,7 +174,9 @@ def _mark_whirl(ax: Axes, curve: Campbell) -> None:
 
 
 def root_locus(branches: Modes, quantity: str, title: str = "", ax: Axes | None = None) -> Figure:
-    """Eigenvalues over a parameter: open at its first value, filled at its last, numbers between.
+    """Return eigenvalues over a parameter.
+
+    Open at its first value, filled at its last, numbers between.
 
     branches : Over a parameter in the unit that `quantity` names.
     quantity : The parameter with its unit, for example ``"mass per bearing [kg]"``.
@@ -206,7 +213,7 @@ def root_locus(branches: Modes, quantity: str, title: str = "", ax: Axes | None 
 
 
 def _window(values: NDArray[np.complex128], highest: float) -> tuple[float, float]:
-    """Growth rates to show: those of the branch nearest to instability, well inside."""
+    """Return the growth rates to show: those of the branch nearest to instability, well inside."""
     rates = np.where(np.isfinite(values), values.real, -np.inf)
     nearest = rates[:, int(np.argmax(rates.max(axis=0)))]
     nearest = nearest[np.isfinite(nearest)]
@@ -256,7 +263,7 @@ _NAMES = {"radial_clearance": "clearance", "supply_temperature": "supply tempera
 
 
 def tolerance_histograms(study: ToleranceStudy, title: str = "") -> Figure:
-    """Histograms of threshold speed and critical mass, and the inputs' importance.
+    """Return histograms of threshold speed and critical mass, and the inputs' importance.
 
     Of a machine the growth rate takes the place of the critical mass. Samples whose film did not
     converge are in none of them, and said.

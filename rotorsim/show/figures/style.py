@@ -52,14 +52,14 @@ SETTINGS: Any = {
 
 
 def model_style(name: str) -> dict[str, Any]:
-    """Colour and dashes of a thermal model, the same in every figure."""
+    """Return colour and dashes of a thermal model, the same in every figure."""
     if name in MODEL_STYLES:
         return MODEL_STYLES[name]
     return _OTHER_STYLES[sum(name.encode()) % len(_OTHER_STYLES)]
 
 
 def series_style(name: str, number: int) -> dict[str, Any]:
-    """Style of a thermal model, or for other series the `number`-th, unlike its neighbours."""
+    """Return style of a thermal model, or the `number`-th for other series."""
     if name in MODEL_STYLES:
         return MODEL_STYLES[name]
     styles = (_OTHER_STYLES[2], MODEL_STYLES["thd"], *_OTHER_STYLES[:2])
@@ -72,7 +72,7 @@ def model_label(name: str) -> str:
 
 
 def new_figure(width: float, height: float, title: str = "") -> Figure:
-    """Empty figure [inches], drawn without a screen and without pyplot's global state."""
+    """Return empty figure [inches], drawn without a screen and without pyplot's global state."""
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     if title:
@@ -83,7 +83,7 @@ def new_figure(width: float, height: float, title: str = "") -> Figure:
 def new_axes(
     rows: int, columns: int, size: tuple[float, float], title: str = "", **options: Any
 ) -> tuple[Figure, np.ndarray]:
-    """Figure with a grid of axes, (rows, columns), in the common style."""
+    """Return the figure with a grid of axes, (rows, columns), in the common style."""
     with mpl.rc_context(SETTINGS):
         figure = new_figure(*size, title)
         axes = figure.subplots(rows, columns, squeeze=False, **options)
@@ -98,7 +98,7 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float]) -> Axes:
 
 
 def figure_of(ax: Axes) -> Figure:
-    """Figure that an axes belongs to."""
+    """Return the figure that an axes belongs to."""
     figure = ax.get_figure(root=True)
     assert isinstance(figure, Figure)
     return figure

@@ -64,13 +64,13 @@ class Chart:
         return self.figure.axes[0]
 
     def place(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Pixels (n, 2) of data points in the axes' units."""
+        """Return pixels (n, 2) of data points in the axes' units."""
         points = np.stack(np.broadcast_arrays(x, y), axis=-1).astype(float)
         pixels = self.axes.transData.transform(points.reshape(-1, 2)).reshape(points.shape)
         return np.stack([pixels[..., 0], self.size[1] - pixels[..., 1]], axis=-1)
 
     def inside(self, x: Array, y: Array) -> Booleans:
-        """Whether data points are within the axes."""
+        """Return whether data points are within the axes."""
         (left, right), (low, high) = self.axes.get_xlim(), self.axes.get_ylim()
         return (x >= left) & (x <= right) & (y >= low) & (y <= high)
 
@@ -89,7 +89,7 @@ class Chart:
 
 
 def map_chart(plane: xr.Dataset, number: int) -> Chart:
-    """Chart of the n-th stability map over speed and mass."""
+    """Return the chart of the n-th stability map over speed and mass."""
     from ..figures import stability_map
 
     words = "rigid rotor"
@@ -100,7 +100,7 @@ def map_chart(plane: xr.Dataset, number: int) -> Chart:
 
 
 def eigenvalue_chart(curves: Sequence[Campbell]) -> Chart:
-    """Chart of the complex plane: eigenvalues over speed."""
+    """Return the chart of the complex plane: eigenvalues over speed."""
     from ..figures import eigenvalue_plot
 
     name = "Eigenvalues over speed: stable left of the red line"
@@ -108,7 +108,7 @@ def eigenvalue_chart(curves: Sequence[Campbell]) -> Chart:
 
 
 def spectrum_chart(runs: Sequence[Run]) -> Chart | None:
-    """Chart of the spectra of runs at constant speed; None where there is none."""
+    """Return the chart of the spectra of runs at constant speed; None where there is none."""
     from ..figures import spectrum_plot
 
     figure = spectrum_plot([run.orbit for run in runs])
@@ -116,7 +116,7 @@ def spectrum_chart(runs: Sequence[Run]) -> Chart | None:
 
 
 def cascade_charts(runs: Sequence[Run]) -> list[Chart]:
-    """Chart of the cascade of each run through the speeds that is long enough."""
+    """Return the chart of the cascade of each run through the speeds that is long enough."""
     from ...orbit.analysis import speed_cascade
     from ..figures import spectrum_cascade
 
@@ -213,7 +213,7 @@ def send_eigenvalues(
 
 
 def _eigenvalues_at(curve: Campbell, speed: Array) -> ComplexArray:
-    """Eigenvalues between the tabulated speeds, (n, k) [1/s]; held at both ends."""
+    """Return eigenvalues between the tabulated speeds, (n, k) [1/s]; held at both ends."""
     known = curve.branches.parameter
     parts = [
         np.interp(speed, known, branch.real) + 1j * np.interp(speed, known, branch.imag)

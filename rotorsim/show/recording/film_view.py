@@ -59,20 +59,20 @@ class _Quantity:
         return f"{self.name}_{'degC' if self.unit == '°C' else self.unit}"
 
     def values(self, film: FilmFrame) -> Array:
-        """On the display grid, in `unit`."""
+        """Return the field on the display grid, in `unit`."""
         if self.name == "pressure":
             return surfaces.on_display_grid(film, film.pressure, at_ends=0.0) / 1e6
         assert film.temperature is not None
         return surfaces.on_display_grid(film, film.temperature, at_ends=None) - ZERO_CELSIUS
 
     def height(self, values: Array) -> Array:
-        """Displacement in journal radii."""
+        """Return the displacement in journal radii."""
         span = max(self.high - self.low, 1e-12)
         return surfaces.PRESSURE_HEIGHT * np.clip((values - self.low) / span, 0.0, 1.0)
 
 
 def quantities(films: Sequence[FilmFrame]) -> list[_Quantity]:
-    """Scales that hold for all films together, so that colours may be compared."""
+    """Return scales that hold for all films together, so that colours may be compared."""
     resting = [float(film.pressure.max()) for film in films if film.time is None]
     moving = [float(film.pressure.max()) for film in films if film.time is not None]
     # A journal about to touch would leave every other moment colourless.
@@ -87,12 +87,12 @@ def quantities(films: Sequence[FilmFrame]) -> list[_Quantity]:
 
 
 def film_names(films: Sequence[FilmFrame]) -> list[str]:
-    """Models in order of first appearance."""
+    """Return models in order of first appearance."""
     return list(dict.fromkeys(film.thermal_model for film in films))
 
 
 def frames_of(films: Sequence[FilmFrame], name: str) -> list[FilmFrame]:
-    """Frames of one model: those at rest by ascending speed, then those of a run in time."""
+    """Return frames of one model: those at rest by ascending speed, then those of a run in time."""
     own = (film for film in films if film.thermal_model == name)
     return sorted(
         own,
@@ -101,7 +101,7 @@ def frames_of(films: Sequence[FilmFrame], name: str) -> list[FilmFrame]:
 
 
 def shows(quantity: _Quantity, frames: Sequence[FilmFrame]) -> bool:
-    """Whether these films have that quantity."""
+    """Return whether these films have that quantity."""
     return quantity.name == "pressure" or all(f.temperature is not None for f in frames)
 
 
@@ -123,7 +123,10 @@ def log_films(stream: rr.RecordingStream, films: Sequence[FilmFrame], runs: Sequ
 
 
 def _changing(frames: Sequence[FilmFrame]) -> list[FilmFrame]:
-    """Frames without those whose temperature is that of the frame before (it is kept in a run)."""
+    """Return frames without those whose temperature is that of the frame before.
+
+    It is kept in a run.
+    """
     before = [None, *frames[:-1]]
     return [
         frame

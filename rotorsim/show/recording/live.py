@@ -100,7 +100,10 @@ def _viewer_stream() -> rr.RecordingStream:
 
 
 def _viewer_is_open() -> bool:
-    """Whether something listens at the viewer's port: here, or through a tunnel elsewhere."""
+    """Return whether something listens at the viewer's port.
+
+    Here, or through a tunnel elsewhere.
+    """
     with suppress(OSError), socket.create_connection(("127.0.0.1", _PORT), timeout=1.0):
         return True
     return False

@@ -91,7 +91,7 @@ class _Show:
         return np.arange(self.places.size * _FRAMES, dtype=float) * (_SECONDS / _FRAMES)
 
     def _chosen(self, modes: Modes) -> list[int]:
-        """Branches: the lowest that swing, and the least stable one."""
+        """Return branches: the lowest that swing, and the least stable one."""
         swings = modes.damping_ratio[-1] < CRITICAL_DAMPING
         order = np.argsort(modes.undamped_frequency[-1])
         lowest = [int(k) for k in order if swings[k]][:_MODES]
@@ -101,7 +101,7 @@ class _Show:
         return lowest
 
     def _films(self) -> tuple[list[Any], list[Any]]:
-        """Frames of the bearings' films at rest, and their journals' places over the clock."""
+        """Return frames of the films at rest, and their journals' places over the clock."""
         frames, runs = [], []
         last = self.last
         if not last.known.size:
@@ -117,7 +117,7 @@ class _Show:
         return frames, runs
 
     def _clock(self, frames: list[Any]) -> Any:
-        """Stand-in for a run: the journal rests at each speed's place while that is shown."""
+        """Return what stands in for a run: the journal at rest at each speed shown."""
         times = self.times
         speed = np.repeat(self.speeds, _FRAMES)
         known = np.array([one.speed for one in frames])
@@ -162,7 +162,7 @@ class _Show:
         return "\n".join(lines)
 
     def _log_rotor(self, stream: rr.RecordingStream) -> None:
-        """Rotor at rest, its bearings and probes."""
+        """Return the rotor at rest, its bearings and probes."""
         z, radius = self.profile
         vertices = _surface(z, radius, np.zeros((z.size, 2)))
         stream.log(
@@ -178,7 +178,7 @@ class _Show:
             _log_places(stream, f"modes/{number_}", self.last, self.length)
 
     def _log_mode(self, stream: rr.RecordingStream, root: str, branch: int) -> None:
-        """One mode: the deflected rotor over the clock, and from speed to speed."""
+        """Return one mode: the deflected rotor over the clock, and from speed to speed."""
         assert self.modes is not None
         modes, rotor = self.modes, self.last.machine.rotor
         positions = np.array([node.position for node in rotor.nodes]) * surfaces.MILLI
@@ -239,7 +239,7 @@ class _Show:
             stream.send_columns(f"{root}/words", [index], rr.Points3D.columns(labels=words))
 
     def _send_campbell(self, stream: rr.RecordingStream, chart: Chart) -> None:
-        """A line at the speed shown, and the frequencies on it."""
+        """Return a line at the speed shown, and the frequencies on it."""
         assert self.modes is not None
         low, high = chart.axes.get_ylim()
         starts = time_index(self.times[np.arange(self.places.size) * _FRAMES])
@@ -271,7 +271,7 @@ class _Show:
             stream.send_columns(f"{root}/modes", [index], columns)
 
     def blueprint(self) -> rrb.Blueprint:
-        """Pages: rotor with its modes and Campbell diagram, and the bearings' films."""
+        """Return pages: rotor with its modes and Campbell diagram, and the bearings' films."""
         rotor = self._view("/rotor", "Rotor")
         shapes = [self._view(f"/modes/{k}", f"Mode {k}") for k in range(1, len(self.branches) + 1)]
         text = rrb.TextDocumentView(origin="/summary", name="What is seen")
@@ -299,7 +299,7 @@ class _Show:
         )  # fmt: skip
 
     def _view(self, origin: str, name: str) -> rrb.Spatial3DView:
-        """Of the rotor from the side, a little from above."""
+        """Return the view of the rotor from the side, a little from above."""
         size = self.length
         return rrb.Spatial3DView(
             origin=origin, name=name, line_grid=False, background=BACKGROUND,
@@ -311,7 +311,7 @@ class _Show:
 
 
 def _profile(result: MachineResult) -> tuple[Array, Array]:
-    """Places along the shaft and outer radii there, two at a step, shaft and discs [mm]."""
+    """Return places along the shaft and outer radii there, two at a step, shaft and discs [mm]."""
     beam, rotor = result.description.rotor.beam, result.machine.rotor
     spans = [(*beam.span(one), one) for one in beam.sections]
     discs = []
@@ -333,12 +333,12 @@ def _profile(result: MachineResult) -> tuple[Array, Array]:
 
 
 def _points(z: Array, bent: Array) -> Array:
-    """Points in the viewer's axes: along the shaft, up (against x), and y."""
+    """Return points in the viewer's axes: along the shaft, up (against x), and y."""
     return np.stack([z, -bent[:, 0], bent[:, 1]], axis=-1)
 
 
 def _surface(z: Array, radius: Array, bent: Array) -> Array:
-    """Rings about the deflected centre line, (len(z)*_AROUND, 3)."""
+    """Return rings about the deflected centre line, (len(z)*_AROUND, 3)."""
     turn = np.linspace(0.0, 2.0 * np.pi, _AROUND)
     ring = np.stack([np.zeros(_AROUND), np.cos(turn), np.sin(turn)], axis=-1)
     return (_points(z, bent)[:, None, :] + radius[:, None, None] * ring).reshape(-1, 3)
@@ -355,7 +355,7 @@ def _normals(rings: int) -> Array:
 
 
 def _shade(rings: int) -> Array:
-    """Light from above, as a factor of each vertex's colour: the mesh has no normals."""
+    """Return light from above, as a factor of each vertex's colour: the mesh has no normals."""
     turn = np.linspace(0.0, 2.0 * np.pi, _AROUND)
     return np.tile(0.62 + 0.38 * np.cos(turn - 0.6), rings)
 
@@ -363,7 +363,7 @@ def _shade(rings: int) -> Array:
 def _log_places(
     stream: rr.RecordingStream, root: str, result: MachineResult, length: float
 ) -> None:
-    """Bearings as rings with their names; probes as arrows."""
+    """Return bearings as rings with their names; probes as arrows."""
     machine = result.description
     names = machine.support_names
     places = [entry.at * surfaces.MILLI for entry in machine.support]

@@ -37,12 +37,12 @@ _STEEL, _DISC, _MARK, _HOUSING = (170, 178, 190), (86, 140, 190), (230, 159, 0),
 
 
 def first_orbit(motion: Motion) -> Orbit:
-    """Orbit of a machine's first station, for the timelines."""
+    """Return the orbit of a machine's first station, for the timelines."""
     return motion.orbit(motion.stations[0].name)
 
 
 def shaft_spans(beam: Beam, nodes: Array) -> Iterator[tuple[int, int, float]]:
-    """First and last node and outer radius [m] of the stretches of equal radius."""
+    """Return the first and last node and outer radius [m] of the stretches of equal radius."""
     radii = []
     for left, right in pairwise(nodes):
         middle = np.array([0.5 * (left + right)])
@@ -60,7 +60,10 @@ def shaft_spans(beam: Beam, nodes: Array) -> Iterator[tuple[int, int, float]]:
 
 
 def _drawn_size(disc: Disc, beam: Beam, shaft: float) -> tuple[float, float]:
-    """Radius and width [m] of a disc as drawn; an added mass is a thick piece of the shaft."""
+    """Return radius and width [m] of a disc as drawn.
+
+    An added mass is a thick piece of the shaft.
+    """
     if disc.polar_inertia > 0.0 and disc.mass > 0.0:
         return disc_size(disc, beam)
     return 1.4 * shaft, 0.7 * shaft
@@ -106,7 +109,7 @@ class MachineRun:
         return 1.0 if self.machine.rotor.beam.clockwise else -1.0
 
     def _swing(self, first: int, rows: Indices | slice) -> tuple[Array, Array]:
-        """X and y [m] of every node's unknown `first` and the next along the run."""
+        """Return x and y [m] of every node's unknown `first` and the next along the run."""
         system = self.motion.problem.system
         places = self._rotor.first_unknown + first
         x, y = (
@@ -124,7 +127,7 @@ class MachineRun:
         return float(f"{_SHOWN_SWING * thickest / max(largest, 1e-12):.1g}")
 
     def points(self, rows: Indices) -> Array:
-        """Nodes (rows, nodes, 3) as drawn [mm]."""
+        """Return nodes (rows, nodes, 3) as drawn [mm]."""
         x, y = self._swing(0, rows)
         return self._drawn(np.broadcast_to(self.nodes, x.shape), x, y)
 
@@ -133,7 +136,10 @@ class MachineRun:
         return np.stack([z * MILLI, self._side * scale * y, -scale * x], axis=-1)
 
     def turns(self, node: int, rows: Indices) -> Array:
-        """Attitude (rows, 4) of a disc as a quaternion: its tilt as drawn, and its rotation."""
+        """Return attitude (rows, 4) of a disc as a quaternion.
+
+        Its tilt as drawn, and its rotation.
+        """
         tilt_x, tilt_y = self._swing(2, rows)
         # slope of the axis: dx/ds = theta_y, dy/ds = -theta_x, s along the rotation vector
         up, side = -tilt_y[:, node], -tilt_x[:, node]
@@ -149,11 +155,11 @@ class MachineRun:
         return np.stack(parts, axis=-1)
 
     def index(self, rows: Indices) -> list[rr.TimeColumn]:
-        """Timelines at some samples of the motion."""
+        """Return timelines at some samples of the motion."""
         return run_index(self.run, rows)
 
     def station_path(self, station: Station, rows: Indices) -> Array:
-        """Shaft's centre (rows, 3) at a station, as drawn."""
+        """Return shaft's centre (rows, 3) at a station, as drawn."""
         x, y = self.motion.displacement(list(station.places))[rows].T
         return self._drawn(np.full(x.shape, station.position), x, y)
 
@@ -199,7 +205,7 @@ def _entity(name: str) -> str:
 
 
 def _log_disc(stream: rr.RecordingStream, entity: str, radius: float, width: float) -> None:
-    """Disc about the shaft's axis, one twelfth of it marked so that its rotation shows."""
+    """Return disc about the shaft's axis, one twelfth of it marked so that its rotation shows."""
     vertices, triangles, normals = cylinder(radius * MILLI, 0.5 * width * MILLI)
     turned = np.roll(vertices, 1, axis=1)  # its axis along the shaft
     angle = np.arctan2(turned[:, 1], -turned[:, 2])
@@ -271,7 +277,10 @@ def _log_path(stream: rr.RecordingStream, shown: MachineRun, station: Station) -
 
 
 def machine_view(shown: MachineRun) -> rrb.Spatial3DView:
-    """View of the machine from the side and a little above, the last turn of each orbit in red."""
+    """Return view of the machine from the side and a little above.
+
+    The last turn of each orbit in red.
+    """
     beam = shown.machine.rotor.beam
     length = beam.length * MILLI
     turn = 2.0 * np.pi / max(float(np.abs(shown.motion.speed).max()), 1e-9)

@@ -46,7 +46,7 @@ def _orbit_entity(name: str) -> str:
 
 
 def _view_points(x: ArrayLike, y: ArrayLike) -> NDArray[np.float32]:
-    """Micrometres in the viewer's axes, (n, 2)."""
+    """Return micrometres in the viewer's axes, (n, 2)."""
     return np.stack([np.asarray(x) * MICRO, -np.asarray(y) * MICRO], axis=-1).astype(np.float32)
 
 
@@ -78,7 +78,7 @@ def log_orbit_piece(stream: rr.RecordingStream, run: Run) -> None:
 
 
 def zoom_reach(runs: Sequence[Run]) -> float:
-    """Half-width [m] of the close-up that holds the smallest of these motions."""
+    """Return the half-width [m] of the close-up that holds the smallest of these motions."""
     sizes = []
     for run in runs:
         x0, y0 = run.orbit.equilibrium
@@ -87,7 +87,7 @@ def zoom_reach(runs: Sequence[Run]) -> float:
 
 
 def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
-    """View of one run with the trail of the last turns.
+    """Return the view of one run with the trail of the last turns.
 
     zoom : Half-width of a close-up about the static position [m]; else the whole clearance circle.
     """
@@ -364,7 +364,7 @@ def log_series(stream: rr.RecordingStream, run: Run) -> None:
 
 
 def series_of(runs: Sequence[Run], wanted: Sequence[Series] = _ALL_SERIES) -> list[Series]:
-    """Those of the wanted series that the runs have."""
+    """Return the wanted series that the runs have."""
     return [one for one in wanted if any(one.values(run.orbit) is not None for run in runs)]
 
 

@@ -67,43 +67,43 @@ class Run(NamedTuple):
 
 
 def runs_of(orbits: Sequence[Orbit]) -> list[Run]:
-    """Orbits with their names; those of fewer than two samples are left out."""
+    """Return orbits with their names; those of fewer than two samples are left out."""
     kept = [orbit for orbit in orbits if orbit.t.size > 1]
     return [Run(*pair) for pair in zip(run_names(kept), kept, strict=True)]
 
 
 def time_index(seconds: ArrayLike) -> rr.TimeColumn:
-    """Column of times; rounded, since the library cuts to the nanosecond below."""
+    """Return the column of times; rounded, since the library cuts to the nanosecond below."""
     nanoseconds = np.round(np.atleast_1d(np.asarray(seconds, dtype=float)) * 1e9)
     return rr.TimeColumn(TIME, duration=nanoseconds.astype("timedelta64[ns]"))
 
 
 def _revolution_index(revolutions: ArrayLike) -> rr.TimeColumn:
-    """Column of thousandths of a turn."""
+    """Return the column of thousandths of a turn."""
     thousandths = np.round(np.atleast_1d(np.asarray(revolutions, dtype=float)) * 1000.0)
     return rr.TimeColumn(REVOLUTIONS, sequence=thousandths.astype(np.int64))
 
 
 def speed_index(speed: ArrayLike) -> rr.TimeColumn:
-    """Column of whole rpm from rad/s."""
+    """Return the column of whole rpm from rad/s."""
     rpm = np.round(np.atleast_1d(np.asarray(speed, dtype=float)) * RPM)
     return rr.TimeColumn(SPEED, sequence=rpm.astype(np.int64))
 
 
 def run_index(run: Run, rows: _Indices) -> list[rr.TimeColumn]:
-    """Both timelines of a run at some of its samples."""
+    """Return both timelines of a run at some of its samples."""
     return [time_index(run.orbit.t[rows]), _revolution_index(run.orbit.revolutions[rows])]
 
 
 def thin(count: int, limit: int) -> _Indices:
-    """Every k-th of `count` samples, at most about `limit`, with the last one always kept."""
+    """Return every k-th of `count` samples, at most about `limit`, and the last."""
     step = max(1, -(-count // max(1, limit)))
     rows = np.arange(0, count, step)
     return rows if rows[-1] == count - 1 else np.append(rows, count - 1)
 
 
 def _chunks(rows: _Indices) -> Iterator[_Indices]:
-    """Parts of at most `_CHUNK_ROWS`."""
+    """Return parts of at most `_CHUNK_ROWS`."""
     for start in range(0, rows.size, _CHUNK_ROWS):
         yield rows[start : start + _CHUNK_ROWS]
 
@@ -157,20 +157,25 @@ def indices_of_frames(
 
 
 def pick_run(runs: Sequence[Run], name: str) -> Run | None:
-    """First run of that model, else the first of all, else None."""
+    """Return the first run of that model, else the first of all, else None."""
     found = runs_named(runs, name)
     return found[0] if found else None
 
 
 def runs_named(runs: Sequence[Run], name: str) -> list[Run]:
-    """Tracks called `name` or `name` and a suffix ("thd", "thd_run_up"); else all of them."""
+    """Return tracks called `name` or `name` and a suffix ("thd", "thd_run_up").
+
+    Else all of them.
+    """
     found = [run for run in runs if run.name == name]
     found += [run for run in runs if run.name.startswith(f"{name}_")]
     return found or list(runs)
 
 
 def distinct_speeds(runs: Sequence[Run]) -> list[tuple[Run, _Indices]]:
-    """Tracks that differ in speed over time, each with the samples at which a point is moved.
+    """Return tracks that differ in speed over time.
+
+    Each with the samples at which a point is moved.
 
     Runs of the two thermal models are commonly at the same speed: one point stands for both, that
     of the longer run.
@@ -229,7 +234,7 @@ def colours(values: ArrayLike, low: float, high: float, name: str = "viridis") -
 
 
 def model_colour(name: str) -> tuple[int, int, int]:
-    """One colour for all that belongs to one model or run, the same in every view."""
+    """Return one colour for all that belongs to one model or run, the same in every view."""
     for model, colour in _MODEL_COLOURS.items():
         if name == model or name.startswith(f"{model}_"):
             return colour

@@ -25,7 +25,7 @@ _UNWRAPPED_STRETCH = 1.8
 
 
 def display_grid(film: FilmFrame) -> tuple[Array, Array]:
-    """Grid on which a film is shown, closed around the turn and at both ends.
+    """Return the grid on which a film is shown, closed around the turn and at both ends.
 
     Returns (AROUND + 1,), (ALONG + 1,) arrays: Angles -pi to pi, the load line in the middle [rad];
         places -L/2 to L/2 [mm].
@@ -66,12 +66,12 @@ def _linear(wanted: Array, known: Array, values: Array, period: float | None = N
 
 
 def bore_radius(journal_radius: float) -> float:
-    """Radius of the bush as drawn [mm], from the journal's [m]."""
+    """Return the radius of the bush as drawn [mm], from the journal's [m]."""
     return journal_radius * MILLI * (1.0 + DRAWN_CLEARANCE)
 
 
 def _face_radius(film: FilmFrame, angle: Array) -> Array:
-    """Radius [mm], as drawn, of the wall around the film at `angle` [rad].
+    """Return the radius [mm], as drawn, of the wall around the film at `angle` [rad].
 
     Of the bore; between pads of their faces as they stand, joined over the openings.
     """
@@ -87,7 +87,7 @@ def _face_radius(film: FilmFrame, angle: Array) -> Array:
 
 
 def pad_outlines(film: FilmFrame) -> list[Array]:
-    """Lines around each pad at both ends, and along its four edges [mm], as drawn."""
+    """Return lines around each pad at both ends, and along its four edges [mm], as drawn."""
     assert film.bearing is not None
     half, lines = 0.5 * film.length * MILLI, []
     for pad, tilt, pivot in zip(film.bearing.pads, film.tilts, film.pivots, strict=True):
@@ -110,7 +110,7 @@ def exaggeration(film: FilmFrame) -> float:
 
 
 def wrapped(film: FilmFrame, height: Array) -> Array:
-    """Film round the bore: vertices (AROUND + 1)*(ALONG + 1) x 3.
+    """Return the film round the bore: vertices (AROUND + 1)*(ALONG + 1) x 3.
 
     height : (AROUND + 1, ALONG + 1) array. Radial displacement in journal radii.
     """
@@ -123,7 +123,7 @@ def wrapped(film: FilmFrame, height: Array) -> Array:
 
 
 def unwrapped(film: FilmFrame, height: Array) -> Array:
-    """Film rolled out: angle times radius along x, height along y, axial along z [mm]."""
+    """Return film rolled out: angle times radius along x, height along y, axial along z [mm]."""
     angle, place = display_grid(film)
     radius = film.journal_radius * MILLI
     x = np.broadcast_to(angle[:, None] * radius, height.shape)
@@ -132,7 +132,7 @@ def unwrapped(film: FilmFrame, height: Array) -> Array:
 
 
 def grid_triangles(rows: int = _AROUND + 1, columns: int = _ALONG + 1) -> NDArray[np.uint32]:
-    """Two triangles for every cell of a (rows, columns) vertex grid."""
+    """Return two triangles for every cell of a (rows, columns) vertex grid."""
     first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
     a, b, c, d = first, first + 1, first + columns, first + columns + 1
     return np.concatenate([np.stack([a, c, b], -1), np.stack([b, c, d], -1)]).astype(np.uint32)
@@ -161,13 +161,16 @@ def cylinder(
 
 
 def circle(radius: float, z: float, count: int = 121) -> Array:
-    """Points of a circle about z."""
+    """Return points of a circle about z."""
     turn = np.linspace(0.0, 2.0 * np.pi, count)
     return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), np.full(count, z)])
 
 
 def ribbon(low: ArrayLike, high: ArrayLike, across: ArrayLike, steps: int = 64) -> Array:
-    """Vertices of a colour bar: a strip from `low` to `high`, `across` wide, (2*steps, 3)."""
+    """Return vertices of a colour bar.
+
+    A strip from `low` to `high`, `across` wide, (2*steps, 3).
+    """
     low, high, across = (np.asarray(v, float) for v in (low, high, across))
     along = low + np.linspace(0.0, 1.0, steps)[:, None] * (high - low)
     return np.stack([along, along + across], axis=1).reshape(-1, 3)

@@ -265,7 +265,7 @@ FRONTS = {
 
 
 def _layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprint:
-    """Blueprint of a recording.
+    """Return the blueprint of a recording.
 
     page : One of `_PAGES`: the one shown first.
     """
@@ -298,7 +298,7 @@ def _layout(contents: RecordingContents, page: str = "Overview") -> rrb.Blueprin
 
 
 def _last_moment(contents: RecordingContents) -> float:
-    """Time of the last film of a run or a transient [s]; 0 without any."""
+    """Return the time of the last film of a run or a transient [s]; 0 without any."""
     return max((film.time or 0.0 for film in contents.films), default=0.0)
 
 
@@ -315,7 +315,7 @@ def _summary_view() -> rrb.View:
 
 
 def _groups(contents: RecordingContents) -> list[tuple[str, list[Run]]]:
-    """Runs at constant speed and runs through the speeds: each a tab of its own."""
+    """Return runs at constant speed and runs through the speeds: each a tab of its own."""
     steady = [run for run in contents.runs if run.orbit.constant_speed]
     passing = [run for run in contents.runs if not run.orbit.constant_speed]
     return [
@@ -333,7 +333,7 @@ def _grouped(contents: RecordingContents, make: Callable[[list[Run]], _Part]) ->
 
 
 def film_views(films: Sequence[FilmFrame], flat: bool) -> list[_Part]:
-    """Views of every film, wrapped or rolled out."""
+    """Return views of every film, wrapped or rolled out."""
     if not films:
         return []
     make = film_view.unwrapped_view if flat else film_view.film_view
@@ -347,7 +347,7 @@ def film_views(films: Sequence[FilmFrame], flat: bool) -> list[_Part]:
 
 
 def _frequency_views(contents: RecordingContents) -> list[_Part]:
-    """Cascades of runs through the speeds, spectra of those at one."""
+    """Return cascades of runs through the speeds, spectra of those at one."""
     views: list[_Part] = [chart.view for chart in contents.cascade_charts]
     return views if contents.spectrum_chart is None else [*views, contents.spectrum_chart.view]
 
@@ -384,7 +384,7 @@ def _overview(contents: RecordingContents) -> _Part:
 
 
 def _machine(contents: RecordingContents, shown: MachineRun) -> _Part:
-    """Rotor in three dimensions, below it orbits, beside it charts, films and the summary."""
+    """Return the page: rotor in three dimensions, orbits, charts, films, summary."""
     orbits = [orbit_view(run) for run in contents.runs[:4]]
     charts = _frequency_views(contents)
     if contents.campbell_chart is not None:

@@ -15,7 +15,7 @@ _SVG_LIMIT = 400_000
 
 
 def figure(drawn: Figure, caption: str) -> str:
-    """Figure within the page: as SVG, or as pixels where that would grow long."""
+    """Return the figure within the page: as SVG, or as pixels where that would grow long."""
     from ..figures.style import figure_bytes
 
     data, kind = figure_bytes(drawn, "svg"), "svg+xml"
@@ -31,17 +31,17 @@ def figure(drawn: Figure, caption: str) -> str:
 
 
 def section(title: str, *parts: str) -> str:
-    """Heading and what belongs to it; nothing where nothing does."""
+    """Return the heading and what belongs to it; nothing where nothing does."""
     inside = "\n".join(part for part in parts if part)
     return f"<section>\n<h2>{escape(title)}</h2>\n{inside}\n</section>" if inside else ""
 
 
 def listing(lines: Iterable[str], kind: str = "") -> str:
-    """Bullet points."""
+    """Return the bullet points."""
     items = "\n".join(f"<li>{escape(line)}</li>" for line in lines)
     return f"<ul{f' class={kind}' if kind else ''}>\n{items}\n</ul>" if items else ""
 
 
 def paragraph(text: str, kind: str = "") -> str:
-    """One paragraph of plain text."""
+    """Return one paragraph of plain text."""
     return f"<p{f' class={kind}' if kind else ''}>{escape(text)}</p>"

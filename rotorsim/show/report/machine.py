@@ -199,7 +199,7 @@ def _taper(left: float, right: float) -> str:
 
 
 def _bearings(results: dict[str, MachineResult]) -> str:
-    """Every bearing at the highest speed, with each thermal model."""
+    """Return every bearing at the highest speed, with each thermal model."""
     rows, top = [], 0.0
     for model, result in results.items():
         for state, entry in zip(result.supports, result.description.support, strict=True):
@@ -308,7 +308,7 @@ def _statements(results: dict[str, MachineResult], study: LateralStudy) -> Itera
 
 
 def _figures(results: dict[str, MachineResult], study: LateralStudy) -> dict[str, list[str]]:
-    """Figures by the section they belong to."""
+    """Return figures by the section they belong to."""
     from ..machine_job import machine_figures
 
     placed: dict[str, list[str]] = {name: [] for name in dict.fromkeys(_PLACES.values())}

@@ -68,7 +68,7 @@ def report_page(found: Results, when: datetime.datetime | None = None) -> str:
 
 
 def document(title: str, body: str) -> str:
-    """Whole page of HTML from its title and what it holds."""
+    """Return the whole page of HTML from its title and what it holds."""
     said = escape(title)
     style = (files("rotorsim.show.report") / "style.css").read_text(encoding="utf-8")
     # The policy forbids whatever would have to be fetched; nothing here runs as a script.
@@ -137,7 +137,7 @@ def _warnings(found: Results) -> list[str]:
 
 
 def _flow(found: Results) -> str:
-    """The film's flow law, and which part of it flows how at the highest speed."""
+    """Return the film's flow law, and which part of it flows how at the highest speed."""
     film = next(iter(found.scenario.cases())).film
     text = f"The film is {_FLOWS[film.flow]}"
     if film.flow == "laminar":
@@ -154,7 +154,7 @@ def _flow(found: Results) -> str:
 
 
 def _not_rigid(found: Results) -> str:
-    """Whose critical mass and map are shown, where the scenario's rotor is another one."""
+    """Say whose critical mass and map are shown, where the scenario's rotor is another one."""
     if not found.curves or not found.curves[0].rotor or found.curves[0].mass is not None:
         return ""
     return html.paragraph(
@@ -165,7 +165,7 @@ def _not_rigid(found: Results) -> str:
 
 
 def _tolerances(found: Results) -> str:
-    """That there is a study which is not on this page."""
+    """Say that there is a study which is not on this page."""
     given = found.scenario.tolerances
     if given is None:
         return ""
@@ -204,7 +204,7 @@ def _conventions(found: Results) -> str:
 
 
 def _figures(found: Results) -> dict[str, list[str]]:
-    """Figures by the section they belong to."""
+    """Return figures by the section they belong to."""
     from ..job import figures
 
     placed: dict[str, list[str]] = {

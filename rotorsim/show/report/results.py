@@ -38,7 +38,10 @@ _AT_TOP = (
 
 
 def top_points(points: Sequence[OperatingPoint]) -> str:
-    """Operating points at the highest speed, one line for each thermal model and clearance."""
+    """Return operating points at the highest speed.
+
+    One line for each thermal model and clearance.
+    """
     top = max((point.speed for point in points), default=0.0)
     rows = [
         [point.thermal_model, *(point_text(point, name) for name in _AT_TOP), point_status(point)]
@@ -50,7 +53,7 @@ def top_points(points: Sequence[OperatingPoint]) -> str:
 
 
 def all_points(points: Sequence[OperatingPoint]) -> str:
-    """Every operating point, a table for each thermal model and clearance."""
+    """Return every operating point, a table for each thermal model and clearance."""
     head = (*(QUANTITIES[name].head for name in _POINT), "status")
     return "\n".join(
         _wide(
@@ -68,7 +71,7 @@ def all_points(points: Sequence[OperatingPoint]) -> str:
 
 
 def coefficients(table: CoefficientTable) -> str:
-    """K and C over speed, a table for each curve."""
+    """Return K and C over speed, a table for each curve."""
     return "\n".join(
         _wide(table_html(COEFFICIENT_HEAD, rows, title, texts=0))
         for title, rows in coefficient_tables(table)
@@ -76,7 +79,7 @@ def coefficients(table: CoefficientTable) -> str:
 
 
 def margins(curves: Sequence[StabilityCurve]) -> str:
-    """Stability at the highest speed and how far from the border, bearing by bearing."""
+    """Return the stability at the highest speed and how far from the border, bearing by bearing."""
     if not curves:
         return ""
     rotor, mass = curves[0].rotor, curves[0].mass
@@ -137,7 +140,7 @@ def _log_decrement(curve: StabilityCurve) -> float | None:
 
 
 def orbits(several: Sequence[Orbit]) -> str:
-    """One line for each orbit."""
+    """Return one line for each orbit."""
     columns = [name for name in ORBIT_HEADS if name != "expected"]
     rows = []
     for orbit in several:

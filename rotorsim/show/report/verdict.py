@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def headline(found: Results) -> str:
-    """Verdict on the rotor at the highest speed and over all, then the film's extremes."""
+    """Return verdict on the rotor at the highest speed and over all, then the film's extremes."""
     counted = [point for point in found.points if not point.converged]
     gaps = f" {len(counted)} of {len(found.points)} points did not converge." if counted else ""
     text, kind = _verdict(found.curves)
@@ -29,7 +29,7 @@ def headline(found: Results) -> str:
 
 
 def _verdict(curves: Sequence[StabilityCurve]) -> tuple[str, str]:
-    """Sentences, and the class of their colour."""
+    """Return sentences, and the class of their colour."""
     rotor = curves[0].rotor if curves else ""
     if not rotor:
         return "No rotor given: no verdict on it.", ""
@@ -63,7 +63,7 @@ def _range(curves: Sequence[StabilityCurve]) -> str:
 
 
 def _extremes(points: Sequence[OperatingPoint]) -> str:
-    """Thinnest film and hottest oil of all converged points, with where they are."""
+    """Return the thinnest film and hottest oil of all converged points, with where they are."""
     known = [point for point in points if point.converged]
     if not known:
         return ""
