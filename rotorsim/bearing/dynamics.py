@@ -259,6 +259,20 @@ def film_dynamics(
     )
 
 
+def following_displacements(solution: FilmSolution, s: complex) -> ComplexArray:
+    """Return displacements (q, 2) of a film with its journal moving along x or y as exp(s t).
+
+    Film frame; pads follow freely.
+    """
+    _, keep = _moving(solution, rotations=False)
+    law = film_dynamics(solution, np.eye(2))(s)
+    found = np.zeros((solution.state.displacement.size, 2), dtype=complex)
+    found[keep[:2]] = np.eye(2)
+    if len(keep) > 2:
+        found[keep[2:]] = -np.linalg.solve(law[2:, 2:], law[2:, :2])
+    return found
+
+
 def with_rotations(solution: FilmSolution, turn: Array) -> FilmDynamics:
     """Return the dynamics with the journal's rotations; `turn`, (2, 2), as in `film_dynamics`."""
     both = np.asarray(np.kron(np.eye(2), turn), dtype=float)

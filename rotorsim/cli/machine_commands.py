@@ -6,6 +6,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..errors import InputError
 from ..rows import RPM, heads, number, shown, with_unit
 from ..study import machine_tables as tables
 from .output import DONE, INCOMPLETE, Output, as_typed, film_progress, progress_bar
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
     from ..files.machine import MachineFile
     from ..orbit.motion import Motion
+    from ..study.hot_spot import HotSpotStudy
     from ..study.machine import MachineResult
 
 
@@ -87,8 +89,28 @@ def machine_stability(output: Output, path: Path, workers: int | None) -> int:
     from ..study.machine import stability_document
 
     results = _analysed(output, path, workers)
-    output.results(stability_document(results), lambda: _stability_tables(results))
-    return _closing(output, results)
+    spots = _hot_spots(output, results)
+    output.results(
+        stability_document(results) | _spot_part(spots),
+        lambda: [*_stability_tables(results), *map(_grid, tables.spot_rows(spots))],
+    )
+    return _closing(output, results, spots)
+
+
+def _hot_spots(output: Output, results: dict[str, MachineResult]) -> HotSpotStudy | None:
+    from ..study.hot_spot import hot_spot_study
+
+    try:
+        return hot_spot_study(results[next(reversed(results))])
+    except InputError as error:  # nothing else is lost by it
+        output.warn(f"hot_spot: {error.message}")
+        return None
+
+
+def _spot_part(spots: HotSpotStudy | None) -> dict[str, Any]:
+    from ..study.hot_spot import hot_spot_document
+
+    return {} if spots is None else {"hot_spot": hot_spot_document(spots)}
 
 
 def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -> int:
@@ -112,10 +134,10 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
         output.note("motion in time")
         motion = simulate(last.description, result=last)
         moved = {"motion": motion_document(motion)}
-    study = lateral_study(last)
+    study, spots = lateral_study(last), _hot_spots(output, results)
     moving = sensitivities(last, workers)
     pictures = folder / "figures" / path.stem
-    files: dict[str, Any] = {"figures": write_machine_figures(results, study, pictures)}
+    files: dict[str, Any] = {"figures": write_machine_figures(results, study, pictures, spots)}
     planes = []
     for number_, entry in enumerate(last.description.map, start=1):
         output.note(f"map over {entry.x} and {entry.y}")
@@ -142,18 +164,19 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
             "maps": [plane_document(one) for one in planes],
             "files": files,
         }
+        | _spot_part(spots)
         | moved
     )
     if not (output.json or output.quiet):
         output.show(*map(_grid, tables.support_rows(results)), *_stability_tables(results))
         output.show(*map(_grid, (*tables.peak_rows(study), *tables.check_rows(study))))
-        output.show(*map(_grid, tables.moving_rows(moving)))
+        output.show(*map(_grid, (*tables.spot_rows(spots), *tables.moving_rows(moving))))
         for plane in planes:
             output.show(*plane_table(plane))
         output.note(f"figures: {pictures}; recording: {files['recording'][0]}")
     for text in study.notes:
         output.warn(text)
-    code = _closing(output, results)
+    code = _closing(output, results, spots)
     return INCOMPLETE if any(one.failed_points for one in planes) else code
 
 
@@ -251,11 +274,12 @@ def report_machine(output: Output, path: Path, page: Path, workers: int | None) 
     results = _analysed(output, path, workers)
     last = results[next(reversed(results))]
     study, moving = lateral_study(last), sensitivities(last, workers)
+    spots = _hot_spots(output, results)
     output.note("report")
-    written = write_machine_report(results, study, page, moving)
+    written = write_machine_report(results, study, page, moving, spots=spots)
     output.document({"report": written, "notes": list(study.notes)})
     output.show(f"{written} is written; open it in a browser")
-    return _closing(output, results)
+    return _closing(output, results, spots)
 
 
 def _grid(rows: tables.Rows) -> Table:
@@ -289,13 +313,16 @@ def analysed(
         return analyse_machine(loaded, models, workers=workers, progress=progress)
 
 
-def _closing(output: Output, results: dict[str, MachineResult]) -> int:
+def _closing(
+    output: Output, results: dict[str, MachineResult], spots: HotSpotStudy | None = None
+) -> int:
     """Say the verdict and what did not converge; return the exit code."""
     failures = tables.failure_lines(results)
     _say_free(output, results[next(reversed(results))].description)
     for text in failures:
         output.warn(text)
     said = [*tables.verdict_lines(results), *tables.heating_lines(results)]
+    said += tables.spot_lines(spots)
     for text in (tables.mesh_line(results[next(reversed(results))]), *said):
         output.note(text)
     return INCOMPLETE if failures else DONE

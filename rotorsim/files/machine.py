@@ -20,6 +20,7 @@ from ..file_kinds import is_missing
 from ..model.entries import NOT_IN_FILES, Example, Made, Number, Quantity, one_of
 from ..model.machine import (
     Clearance,
+    HotSpotSettings,
     LateralSettings,
     MachineControl,
     MachineOperating,
@@ -141,6 +142,7 @@ class MachineFile:
     load : tuple of StaticForce
     clearance : tuple of Clearance
     lateral : LateralSettings
+    hot_spot : HotSpotSettings or None
     map : tuple of MapEntry
     tolerances : MachineTolerances or None
     control : MachineControl or None
@@ -167,6 +169,7 @@ class MachineFile:
     load: tuple[StaticForce, ...] = ()
     clearance: tuple[Clearance, ...] = ()
     lateral: LateralSettings = field(default_factory=LateralSettings)
+    hot_spot: HotSpotSettings | None = None
     map: tuple[MapEntry, ...] = ()
     tolerances: MachineTolerances | None = None
     control: MachineControl | None = None
@@ -254,6 +257,21 @@ class MachineFile:
                 if given is not None:
                     found.values(given, f"{key}_values")
             held_values(self, entry.hold or {}, f"map[{i}].hold")
+        heated = [
+            name for name, one in self.bearings.items() if "thd" in map(str, one.thermal_models)
+        ]
+        if self.hot_spot is not None and not heated:
+            raise InputError(
+                'needs a support with bearing = "file.toml", whose file has thermal.models = '
+                '["thd"]', key="hot_spot",
+            )  # fmt: skip
+        for i, name in enumerate(self.hot_spot.support if self.hot_spot is not None else ()):
+            try:
+                one_of(heated, name)
+            except InputError as error:
+                said = f"{error.message}: the supports on heated films"
+                key = f"hot_spot.support[{i}]"
+                raise InputError(said, key=key, value=name) from None
         if self.tolerances is not None:
             spreads(self, self.tolerances.spread, "tolerances.spread")
         if self.control is not None:

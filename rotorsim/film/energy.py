@@ -10,6 +10,7 @@ the flow, solves everything in one pass where nothing flows back; a few passes w
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,10 +27,11 @@ class WallTemperatures:
     """Both walls [K]; an insulated wall takes no heat at all.
 
     bush : (n, m) array
+    shaft : float or (n, m) array
     """
 
-    bush: Array
-    shaft: float
+    bush: NDArray[Any]
+    shaft: float | NDArray[Any]
     bush_insulated: bool = False
 
 
@@ -137,21 +139,26 @@ def march(
     problem: EnergyProblem,
     viscosity: Array,
     walls: WallTemperatures,
-    inlet_temperature: Array,
-    temperature: Array,
+    inlet_temperature: NDArray[Any],
+    temperature: NDArray[Any],
     *,
     passes: int = 1,
-    source: Array | None = None,
-    leaving: Array | None = None,
-) -> tuple[float, Array]:
-    """Solve for the temperature in place.
+    source: NDArray[Any] | None = None,
+    storage: NDArray[Any] | None = None,
+    swelling: Array | None = None,
+    leaving: NDArray[Any] | None = None,
+) -> tuple[float, NDArray[Any]]:
+    """Solve for the temperature in place; real, or complex throughout for harmonic ones.
 
     viscosity : (n, m, k) array. [Pa s]
     inlet_temperature : (4, n, m) or (4, n, m, k) array. Of the oil that enters through a face
         behind which no film lies [K].
     temperature : (n, m, k) array. First guess, overwritten [K].
     passes : Sweeps; one is exact where nothing flows back.
-    source : (n, m, k) array. Further heat [W] (manufactured solutions).
+    source : (n, m, k) array. Further heat [W].
+    storage : (n, m) array. Heat that a layer takes up per degree [W/K]: i omega times its capacity
+        where temperatures vary as exp(i omega t).
+    swelling : (n, m) array. rho c_p times the rate at which the oil in a film grows [W/K].
     leaving : (2, n, m, k) array. What a march over a neighbouring field returned; needed where a
         cell is visited before the one upstream of it, overwritten.
     Returns float: The last pass's largest change [K].
@@ -159,44 +166,81 @@ def march(
         along the axis [K].
     """
     change = 0.0
-    flow, layers = problem.flow, problem.layers
-    extra = np.zeros((1, 1, 1)) if source is None else source
+    if leaving is None:
+        # Temperature of the oil that leaves each cell along the film and along the axis.
+        leaving = np.stack([temperature, temperature])
+    for _ in range(passes):
+        change = _pass(
+            problem, viscosity, walls, inlet_temperature, temperature, leaving, source, storage,
+            swelling, np.empty((0, 0, 0), temperature.dtype),
+        )  # fmt: skip
+    return change, leaving
+
+
+def missing_heat(
+    problem: EnergyProblem,
+    viscosity: Array,
+    walls: WallTemperatures,
+    inlet_temperature: Array,
+    temperature: Array,
+    swelling: Array,
+) -> Array:
+    """Return what each layer takes up at `temperature` [W], (n, m, k); 0 in a steady film.
+
+    swelling : See `march`.
+    """
+    missing = np.zeros(temperature.shape)
+    leaving = np.stack([temperature, temperature])
+    for _ in range(2):  # the first one finds what leaves each cell
+        _pass(
+            problem, viscosity, walls, inlet_temperature, temperature, leaving, None, None,
+            swelling, missing,
+        )  # fmt: skip
+    return missing
+
+
+def _pass(
+    problem: EnergyProblem, viscosity: Array, walls: WallTemperatures, inlet: NDArray[Any],
+    temperature: NDArray[Any], leaving: NDArray[Any], source: NDArray[Any] | None,
+    storage: NDArray[Any] | None, swelling: Array | None, missing: NDArray[Any],
+) -> float:  # fmt: skip
+    flow, layers, kind = problem.flow, problem.layers, temperature.dtype
+    extra = np.zeros((1, 1, 1), kind) if source is None else source
+    stored = np.empty((0, 0), kind) if storage is None else storage
+    growing = np.empty((0, 0)) if swelling is None else swelling / temperature.shape[2]
     turbulent = layers.turbulent
     axial = layers.pressure_share if turbulent is None else turbulent.axial_share
     heat_share = np.empty((4, 0, 0, 0)) if turbulent is None else turbulent.heat_share
     conduction = np.empty((0, 0, 0)) if turbulent is None else turbulent.conduction
-    if inlet_temperature.ndim == 3:
-        inlet_temperature = inlet_temperature[:, :, :, None]
-    # Temperature of the oil that leaves each cell along the film and along the axis.
-    if leaving is None:
-        leaving = np.stack([temperature, temperature])
-    for _ in range(passes):
-        change = _sweep(
-            flow.poiseuille, flow.couette, flow.shared, flow.inlet, problem.carry_over,
-            layers.pressure_share, axial, layers.shear_share, layers.g, viscosity, heat_share,
-            conduction, problem.heating, problem.conductance,
-            problem.heat_capacity, problem.order, problem.axial_order, problem.fixed,
-            problem.interior, problem.dx, problem.dy, walls.bush, walls.shaft, walls.bush_insulated,
-            inlet_temperature, extra, temperature, leaving,
-        )  # fmt: skip
-    return change, leaving
+    if inlet.ndim == 3:
+        inlet = inlet[:, :, :, None]
+    shaft = np.full(walls.bush.shape, walls.shaft, kind)
+    return _sweep(
+        flow.poiseuille, flow.couette, flow.shared, flow.inlet, problem.carry_over,
+        layers.pressure_share, axial, layers.shear_share, layers.g, viscosity, heat_share,
+        conduction, problem.heating, problem.conductance, problem.heat_capacity, problem.order,
+        problem.axial_order, problem.fixed, problem.interior, problem.dx, problem.dy, walls.bush,
+        shaft, walls.bush_insulated, inlet, extra, stored, growing, missing, temperature, leaving,
+    )  # fmt: skip
 
 
 @kernel
 def _sweep(
     poiseuille, couette, shared, inlet, carry_over, pressure_share, axial_share, shear_share, g,
     viscosity, heat_share, conduction, heating, conductance, heat_capacity, order, axial_order,
-    fixed, interior, dx, dy, bush, shaft, bush_insulated, inlet_temperature, extra, temperature,
-    leaving,
+    fixed, interior, dx, dy, bush, shaft, bush_insulated, inlet_temperature, extra, stored,
+    swelling, missing, temperature, leaving,
 ):  # fmt: skip
     n, m, layers = temperature.shape
     dz = 1.0 / layers
-    lower, diagonal = np.empty(layers), np.empty(layers)
-    upper, right = np.empty(layers), np.empty(layers)
-    slope = np.empty(2 * layers)
-    largest = 0.0
+    lower, upper = np.empty(layers), np.empty(layers)
+    diagonal, right = np.empty(layers, temperature.dtype), np.empty(layers, temperature.dtype)
+    slope = np.empty(2 * layers, temperature.dtype)
+    slope[0] = 0.0
+    zero, largest = slope[0], 0.0  # of the temperature's kind, real or complex
     layered = 1 if inlet_temperature.shape[3] == layers else 0
-    with_extra = extra.shape[0] == n
+    with_extra, with_stored = extra.shape[0] == n, stored.shape[0] == n
+    growing, asked = swelling.shape[0] == n, missing.shape[0] == n
     turbulent = conduction.shape[0] == n
     for c in range(n):
         i = order[c]
@@ -252,9 +296,9 @@ def _sweep(
                 q_e *= heat_capacity
                 q_s *= heat_capacity
                 q_n *= heat_capacity
-                center, rhs = 0.0, 0.0
-                ahead, ahead_from = 0.0, 0.0
-                aside, aside_from = 0.0, 0.0
+                center, rhs = zero, zero
+                ahead, ahead_from = 0.0, zero
+                aside, aside_from = 0.0, zero
                 if q_w > 0.0:
                     center += q_w
                     part = carry_over[i, j]
@@ -329,16 +373,33 @@ def _sweep(
                     center += 2.0 * k_low
                     rhs += 2.0 * k_low * bush[i, j]
                 rising += q_w - q_e + q_s - q_n
+                if growing:
+                    rising -= swelling[i, j]
+                if with_stored:
+                    center += stored[i, j]
                 a_above = 0.0
                 if k < layers - 1:
                     a_above = max(-rising, k_high - 0.5 * rising, 0.0)
                 else:
                     center += 2.0 * k_high
-                    rhs += 2.0 * k_high * shaft
+                    rhs += 2.0 * k_high * shaft[i, j]
                 lower[k] = -a_below
                 upper[k] = -a_above
                 diagonal[k] = center + a_below + a_above
                 right[k] = rhs
+            if asked:
+                for k in range(layers):
+                    held = diagonal[k] * temperature[i, j, k]
+                    if k > 0:
+                        held += lower[k] * temperature[i, j, k - 1]
+                    if k < layers - 1:
+                        held += upper[k] * temperature[i, j, k + 1]
+                    missing[i, j, k] = right[k] - held
+                    for axis in range(2):
+                        value = temperature[i, j, k]
+                        weight = leaving[axis, i, j, k]
+                        leaving[axis, i, j, k] = value + weight * (value - slope[axis * layers + k])
+                continue
             # Thomas
             for k in range(1, layers):
                 factor = lower[k] / diagonal[k - 1]

@@ -71,12 +71,15 @@ def unbalance_response(machine: Machine, speed: ArrayLike | None = None) -> Unba
     amplitude = np.full((omega.size, machine.size), np.nan, dtype=complex)
     for start in range(0, omega.size, _AT_ONCE):
         part = slice(start, start + _AT_ONCE)
-        amplitude[part] = _solve(machine, omega[part], force[part])
+        amplitude[part] = forced_response(machine, omega[part], force[part])
     return UnbalanceResponse(machine, omega, amplitude)
 
 
-def _solve(machine: Machine, omega: Array, force: ComplexArray) -> ComplexArray:
-    """Return the amplitudes (n, size) at speeds (n,) under forces (n, size); NaN: not known."""
+def forced_response(machine: Machine, omega: Array, force: ComplexArray) -> ComplexArray:
+    """Return the amplitudes (n, size) at speeds (n,) [rad/s] under synchronous forces (n, size).
+
+    NaN where a support has no coefficients.
+    """
     form = machine.band_form
     found = np.full(force.shape, np.nan, dtype=complex)
     if machine.frequency_dependent or not form.narrow:

@@ -27,6 +27,7 @@ from .entries import (
 from .entries import (
     Clearance as RadialClearance,
 )
+from .expansion import STEEL_EXPANSION, Coefficient
 from .machine_orbit import MachineForce
 from .operating import MAX_COUNT, SpeedRange, ascending
 from .orbit import Design
@@ -436,6 +437,22 @@ class LateralSettings:
     edition: str = "not stated"
     unbalance_factor: Annotated[float, Number(above=0.0, most=100.0)] = 4.0
     destabilising_stiffness: tuple[Destabilising, ...] = ()
+
+
+@dataclass(frozen=True)
+class HotSpotSettings:
+    """Synchronous hot spots of a machine's journals (Morton effect).
+
+    support : Names of supports on films; by default all of them.
+    expansion, conductivity, specific_heat : Of the shaft [1/K, W/(m K), J/(kg K)].
+    films : Speeds at which the films are solved for it, evenly over the machine's.
+    """
+
+    support: tuple[str, ...] = ()
+    expansion: Coefficient = STEEL_EXPANSION
+    conductivity: Annotated[float, Quantity("thermal conductivity", "45 W/(m*delta_degC)")] = 45.0
+    specific_heat: Annotated[float, Quantity("specific heat", "460 J/(kg*delta_degC)")] = 460.0
+    films: Annotated[int, Number(least=2, most=MAX_COUNT)] = 12
 
 
 class _Unread(Leaf):

@@ -12,6 +12,7 @@ from ..machine.critical_map import critical_speed_map, principal_stiffness
 from ..machine.peaks import node_at
 from ..orbit.motion import Motion
 from ..rows import RPM, number
+from ..study.hot_spot import HotSpotStudy
 from ..study.lateral import LateralStudy
 from ..study.machine import MachineResult
 from ..study.machine_motion import films_in_motion, labelled, motion_document
@@ -29,7 +30,10 @@ _STIFFNESS = np.geomspace(1e5, 1e10, 61)
 
 
 def write_machine_figures(
-    results: Mapping[str, MachineResult], study: LateralStudy, folder: Path
+    results: Mapping[str, MachineResult],
+    study: LateralStudy,
+    folder: Path,
+    spots: HotSpotStudy | None = None,
 ) -> list[Path]:
     """Write every figure of a machine as PNG and SVG.
 
@@ -39,13 +43,13 @@ def write_machine_figures(
 
     return [
         path
-        for name, figure in machine_figures(results, study)
+        for name, figure in machine_figures(results, study, spots)
         for path in save_figure(figure, folder / name)
     ]
 
 
 def machine_figures(
-    results: Mapping[str, MachineResult], study: LateralStudy
+    results: Mapping[str, MachineResult], study: LateralStudy, spots: HotSpotStudy | None = None
 ) -> Iterator[tuple[str, Figure]]:
     """Give names and figures of all that a machine's results have."""
     from .figures import machine as draw
@@ -67,6 +71,8 @@ def machine_figures(
         yield "unbalance_response", draw.bode_at_probes(study.responses, continuous, title)
     if study.decrement_curves:
         yield "destabilising", draw.decrement_over_stiffness(study.decrement_curves, title)
+    if spots is not None:
+        yield "hot_spot", draw.hot_spot_loop(spots, title)
     if description.support and last.known.size:
         rotor = last.machine.rotor
         nodes = [node_at(rotor, entry.at) for entry in description.support]

@@ -607,14 +607,8 @@ def _on_its_stand(entry: SupportEntry, support: Support) -> Support:
     return support
 
 
-def points_with_fields(
-    result: MachineResult, places: Sequence[int]
-) -> dict[str, list[OperatingPoint]]:
-    """Return converged films of a result, solved again with their fields, by the support's name.
-
-    places : Which of the speeds, ascending.
-    """
-    from ..bearing.solve import solve_case
+def film_cases(result: MachineResult) -> Callable[[int, int], Case]:
+    """Return the film of support i at its load at speed number k, as a function of both."""
 
     def no_sweep(_cases: list[Case], _speeds: list[float]) -> list[OperatingPoint]:
         return []
@@ -624,12 +618,29 @@ def points_with_fields(
         result.speeds.tolist(),
         no_sweep,
     )  # fmt: skip
+
+    def case(i: int, k: int) -> Case:
+        state = result.supports[i]
+        return analysis.case(i, result.description.bearings[state.name], state.load[k])
+
+    return case
+
+
+def points_with_fields(
+    result: MachineResult, places: Sequence[int]
+) -> dict[str, list[OperatingPoint]]:
+    """Return converged films of a result, solved again with their fields, by the support's name.
+
+    places : Which of the speeds, ascending.
+    """
+    from ..bearing.solve import solve_case
+
+    case_of = film_cases(result)
     found: dict[str, list[OperatingPoint]] = {}
     for i, state in enumerate(result.supports):
         warm = None
         for k in places if state.points else ():
-            case = analysis.case(i, result.description.bearings[state.name], state.load[k])
-            speed = float(result.speeds[k])
+            case, speed = case_of(i, k), float(result.speeds[k])
             point, warm = solve_case(case, speed, initial=warm, keep_fields=True)
             warm = warm if point.converged else None
             if point.converged:

@@ -11,6 +11,7 @@ import numpy as np
 from ..arrays import Indices
 from ..machine.branches import Modes
 from ..rows import RPM, ZERO_CELSIUS, heads, number, shown, shown_unit, units_shown, with_unit
+from .hot_spot import HotSpotStudy
 from .lateral import LateralStudy
 from .machine import MachineResult, destabilised_by_heating
 from .sensitivity import Sensitivity
@@ -19,6 +20,10 @@ _REACH = 3.0
 """Multiple of the highest speed up to which the least stable mode is shown."""
 _SHOWN_SPEEDS = 12
 """Rows of the tables over speed, at most, where not all are wanted."""
+
+
+_NO_SPIRAL = 1e-6
+"""Below it a hot spot stands still [rad/s]."""
 
 
 class Rows(NamedTuple):
@@ -240,6 +245,40 @@ def failure_lines(results: dict[str, MachineResult]) -> list[str]:
             if not one.converged
         ]
     return lines
+
+
+def spot_rows(study: HotSpotStudy | None) -> Iterator[Rows]:
+    """Return the loop of the hot spots over speed; none without."""
+    if study is None:
+        return
+    loop, rows = study.loop, []
+    names = [f"{name} ΔK" for name in study.names]
+    head = heads("rpm", "real gain", "gain", "growth 1/s", "spiral s", *names)
+    for i in _some(loop.speed.size, every=False):
+        frequency = float(loop.frequency[i])
+        rows.append((
+            f"{loop.speed[i] * RPM:.0f}", number(float(loop.gain[i, 0].real), 3),
+            number(abs(loop.gain[i, 0]), 3), number(float(loop.growth_rate[i]), 3),
+            number(2.0 * math.pi / frequency, 3) if abs(frequency) > _NO_SPIRAL else "-",
+            *(number(2.0 * abs(t), 3) for t in loop.temperature[i]),
+        ))  # fmt: skip
+    yield Rows("Synchronous hot spots", head, rows)
+
+
+def spot_lines(study: HotSpotStudy | None) -> list[str]:
+    """Return what the hot spots do, a sentence."""
+    if study is None:
+        return []
+    loop = study.loop
+    top = int(np.nanargmax(loop.gain[:, 0].real))
+    most = f"{number(float(loop.gain[top, 0].real), 3)} at {loop.speed[top] * RPM:.0f} rpm"
+    if study.stable:
+        return [f"hot spots settle at all speeds: largest real gain {most}, limit 1"]
+    at = ", ".join(f"{one * RPM:.0f}" for one in study.thresholds) or "no speed within the range"
+    return [
+        f"hot spots grow and the vibration spirals (Morton effect): largest real gain {most}, "
+        f"limit 1; changes at {at} rpm"
+    ]
 
 
 def verdict_lines(results: dict[str, MachineResult]) -> list[str]:

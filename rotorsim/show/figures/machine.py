@@ -23,6 +23,7 @@ from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpee
 from ...model.shaft import Disc, Section
 from ...rotor import Beam, Rotor
 from ...rows import RPM, axis_title, in_shown_unit, with_unit
+from ...study.hot_spot import HotSpotStudy
 from ...text import caption
 from .style import (
     MICRO,
@@ -449,6 +450,27 @@ def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str =
         )  # fmt: skip
     lower.set(xlabel="time [ms]", ylabel="force at the actuator [N]")
     lower.legend(loc="upper right")
+    return figure
+
+
+def hot_spot_loop(study: HotSpotStudy, title: str = "") -> Figure:
+    """Draw the loop's gain over speed, and each journal's temperature difference and lag."""
+    figure, axes = new_axes(3, 1, (6.4, 6.6), sharex=True)
+    above, middle, below = np.ravel(axes)
+    loop = study.loop
+    speed = loop.speed * RPM
+    above.plot(speed, loop.gain[:, 0].real, color="#D55E00", label="real part")
+    above.plot(speed, np.abs(loop.gain[:, 0]), color="#555555", ls="--", label="modulus")
+    above.axhline(1.0, color="#8c1d2f", lw=1.0, label="limit of the real part")
+    above.set(ylabel="gain [-]", title=caption(title))
+    for number, name in enumerate(study.names):
+        look = series_style("", number)
+        middle.plot(speed, 2.0 * np.abs(loop.temperature[:, number]), label=name, **look)
+        below.plot(study.films.speed * RPM, np.degrees(study.lag[:, number]), label=name, **look)
+    middle.set(ylabel="warm less cold side [K]", ylim=(0.0, None))
+    below.set(ylabel="hot behind high spot [°]", xlabel="speed [rpm]")
+    for ax in (above, middle):
+        ax.legend(loc="best")
     return figure
 
 

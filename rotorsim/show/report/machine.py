@@ -17,6 +17,7 @@ from ...study import machine_tables as tables
 from . import html
 
 if TYPE_CHECKING:
+    from ...study.hot_spot import HotSpotStudy
     from ...study.lateral import LateralStudy
     from ...study.machine import MachineResult
     from ...study.sensitivity import Sensitivity
@@ -29,43 +30,51 @@ _CAPTIONS = {
     "critical_speed_map": "Undamped critical speeds over support stiffness, and the bearings' own.",
     "unbalance_response": "Response at the probes to the unbalances of the file.",
     "destabilising": "Logarithmic decrement over destabilising stiffness.",
+    "hot_spot": "Gain of the loop of orbit, heat and bend; temperature differences; lag.",
 }
 _MOVING = html.paragraph(
     "Each parameter changed alone, by the amount given and in proportion; static loads held."
 )
+_SPOTS = html.paragraph(
+    "The side of a journal that always meets the thin film is warmer; the shaft bends and turns "
+    "with it. Temperatures under the file's unbalance, settled; they grow without limit where the "
+    "real part of the loop's gain exceeds 1."
+)
 _PLACES = {
     "rotor": "rotor", "campbell": "modes", "growth_rate": "verdict", "mode_shapes": "modes",
     "critical_speed_map": "critical", "unbalance_response": "response",
-    "destabilising": "sensitivity",
+    "destabilising": "sensitivity", "hot_spot": "spots",
 }  # fmt: skip
 
 
 def write_machine_report(
     results: dict[str, MachineResult], study: LateralStudy, path: str | Path,
     moving: Sequence[Sensitivity] = (), when: datetime.datetime | None = None,
+    spots: HotSpotStudy | None = None,
 ) -> Path:  # fmt: skip
     """Write the report of a machine's results, whole or not at all.
 
     results : By thermal model; modes, response and checks are those of the last.
     moving : Sensitivities of its threshold.
+    spots : Its hot spots.
     """
     from .page import document
 
     last = results[next(reversed(results))]
     title = last.description.title
     target = Path(path)
-    parts = _parts(results, study, moving, when)
+    parts = _parts(results, study, moving, when, spots)
     write_text(target, document(title, "\n".join(part for part in parts if part)))
     return target
 
 
 def _parts(
     results: dict[str, MachineResult], study: LateralStudy, moving: Sequence[Sensitivity],
-    when: datetime.datetime | None,
+    when: datetime.datetime | None, spots: HotSpotStudy | None,
 ) -> Iterator[str]:  # fmt: skip
     last = results[next(reversed(results))]
     machine = last.description
-    figures = _figures(results, study)
+    figures = _figures(results, study, spots)
     title = escape(machine.title)
     yield f"<header>\n<h1>{title}</h1>\n{_origin(machine, when)}\n</header>"
     yield _headline(results)
@@ -88,6 +97,12 @@ def _parts(
     yield html.section(
         "Sensitivity to destabilising stiffness (level I)",
         *(_table(one) for one in tables.sensitivity_rows(study)), *figures["sensitivity"],
+    )  # fmt: skip
+    yield html.section(
+        "Synchronous hot spots (Morton effect)",
+        html.listing(map(_sentence, tables.spot_lines(spots))),
+        *map(_table, tables.spot_rows(spots)), _SPOTS if spots is not None else "",
+        *figures["spots"],
     )  # fmt: skip
     found = [_table(one) for one in tables.moving_rows(moving)]
     yield html.section("What moves the stability threshold", *found, _MOVING if found else "")
@@ -307,12 +322,14 @@ def _statements(results: dict[str, MachineResult], study: LateralStudy) -> Itera
         )
 
 
-def _figures(results: dict[str, MachineResult], study: LateralStudy) -> dict[str, list[str]]:
+def _figures(
+    results: dict[str, MachineResult], study: LateralStudy, spots: HotSpotStudy | None
+) -> dict[str, list[str]]:
     """Return figures by the section they belong to."""
     from ..machine_job import machine_figures
 
     placed: dict[str, list[str]] = {name: [] for name in dict.fromkeys(_PLACES.values())}
-    for name, drawn in machine_figures(results, study):
+    for name, drawn in machine_figures(results, study, spots):
         placed.setdefault(_PLACES.get(name, "modes"), []).append(
             html.figure(drawn, _CAPTIONS.get(name, name.replace("_", " ")))
         )
