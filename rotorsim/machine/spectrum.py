@@ -23,7 +23,7 @@ _DENSE = 48
 """Unknowns up to which all eigenvalues are computed."""
 _BLOCK = 2
 """Vectors that the Krylov space grows by: two planes make double eigenvalues."""
-_EXTRA = 16
+_EXTRA = 10
 """Size of the Krylov space beyond five times the number of pairs that are wanted."""
 _SHIFT = 3e-4
 """Of the highest frequency: the least shift."""
