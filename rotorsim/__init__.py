@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .orbit import Orbit
     from .shipped import shipped_scenarios, shipped_tables
     from .show.job import record
+    from .show.plot import plot
     from .show.viewer import open_viewer
     from .status import SolveStatus, Stability
     from .study.machine import analyse_machine
@@ -61,6 +62,7 @@ __all__ = [
     "load_scenario",
     "modes",
     "open_viewer",
+    "plot",
     "record",
     "shipped_scenarios",
     "shipped_tables",
@@ -87,6 +89,7 @@ _HOMES = {
     "orbit": ("Orbit",),
     "shipped": ("shipped_scenarios", "shipped_tables"),
     "show.job": ("record",),
+    "show.plot": ("plot",),
     "show.viewer": ("open_viewer",),
     "status": ("SolveStatus", "Stability"),
     "study.machine": ("analyse_machine",),

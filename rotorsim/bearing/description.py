@@ -110,6 +110,16 @@ def point_text(point: OperatingPoint, name: str, digits: int | None = None) -> s
     return QUANTITIES[name].text(getattr(point, name), digits)
 
 
+def point_line(point: OperatingPoint) -> str:
+    """Return where a point is and what it comes to, in a line."""
+    load = "no load known" if point.load is None else f"{point.load / 1e3:.4g} kN"
+    return (
+        f"{point.thermal_model}, {point.speed * RPM:.0f} rpm, "
+        f"c = {point.radial_clearance * 1e6:.4g} µm, e/c {point.eccentricity_ratio:.3g}, {load}, "
+        f"{point.status.value}"
+    )
+
+
 def point_rows(point: OperatingPoint) -> list[Row]:
     """Return what a point comes to, row by row: equilibrium, film, heat, rigid rotor, solver."""
     rows = []

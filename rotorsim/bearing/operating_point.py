@@ -330,6 +330,11 @@ class OperatingPoint:
         hot = self.hot_radial_clearance
         return self.radial_clearance if hot is None else hot
 
+    def __repr__(self) -> str:
+        from .description import point_line
+
+        return f"<OperatingPoint: {point_line(self)}>"
+
     def _repr_html_(self) -> str:
         from .description import point_html
 

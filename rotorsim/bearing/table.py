@@ -133,6 +133,16 @@ class CoefficientTable:
             for name in mine.variables
         )
 
+    def __repr__(self) -> str:
+        models = ", ".join(map(str, self.dataset["thermal_model"].values))
+        clearances = self.dataset["radial_clearance"].values.astype(float) * 1e6
+        shown = ", ".join(f"{one:.4g}" for one in clearances)
+        low, high = self.speeds[[0, -1]] * 30.0 / np.pi
+        return (
+            f"<CoefficientTable: {models}; c = {shown} µm; {self.speeds.size} speeds, "
+            f"{low:.0f} to {high:.0f} rpm>"
+        )
+
     def _repr_html_(self) -> str:
         from .description import table_html_of
 

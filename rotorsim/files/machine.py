@@ -205,6 +205,13 @@ class MachineFile:
                     key="rotor.axial_force",
                 )
 
+    def __repr__(self) -> str:
+        beam, supports = self.rotor.beam, ", ".join(self.support_names) or "none"
+        return (
+            f"<MachineFile: {self.title}; shaft of {beam.length * 1e3:.4g} mm, {len(beam.discs)} "
+            f"discs; supports: {supports}>"
+        )
+
     @classmethod
     def from_text(cls, text: str, source: str | Path | None = None) -> MachineFile:
         """Read a machine from TOML text.

@@ -158,4 +158,4 @@ def peak(field: Array, half: bool) -> float:
     line = field[[i - 1, i, (i + 1) % field.shape[0]], j]
     bend = line[0] - 2.0 * line[1] + line[2]
     slope = 0.5 * (line[2] - line[0])
-    return value if bend >= 0.0 else value - 0.5 * slope**2 / bend
+    return float(value if bend >= 0.0 else value - 0.5 * slope**2 / bend)

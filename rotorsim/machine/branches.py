@@ -45,6 +45,11 @@ class Modes:
     smooth: Booleans
     planes: tuple[tuple[int, int], ...] = ((0, 1),)
 
+    def __repr__(self) -> str:
+        count, branches = self.eigenvalues.shape
+        ends = f"{self.parameter[0]:.4g} to {self.parameter[-1]:.4g} rad/s" if count else "none"
+        return f"<Modes: {branches} branches at {count} speeds, {ends}>"
+
     @property
     def growth_rate(self) -> Array:
         """Re lambda [1/s], above 0 where the mode grows, 0 where it is `undamped`."""

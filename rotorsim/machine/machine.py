@@ -57,6 +57,10 @@ class Machine:
         object.__setattr__(self, "supports", tuple(mounts))
         _ = self.places, self.speeds
 
+    def __repr__(self) -> str:
+        names = ", ".join(mount.name for mount in self.mounts) or "none"
+        return f"<Machine: {self.rotor!r}; supports: {names}>"
+
     @classmethod
     def on_identical(cls, rotor: Rotor, support: Support) -> Machine:
         """Return the rotor with the same support at each of its `bearing_nodes`."""

@@ -78,6 +78,10 @@ class StabilityMap:
                 dataset = dataset.isel({name: 0})
         return dataset
 
+    def __repr__(self) -> str:
+        sizes = ", ".join(f"{size} {name}" for name, size in self.dataset.sizes.items())
+        return f"<StabilityMap: {sizes}>"
+
     def _repr_html_(self) -> str:
         sizes = ", ".join(f"{size} × {name}" for name, size in self.dataset.sizes.items())
         verdict = self.dataset["verdict"]

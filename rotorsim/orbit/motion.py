@@ -163,6 +163,13 @@ class Motion:
     message: str = ""
     events: tuple[OrbitEvent, ...] = field(default=())
 
+    def __repr__(self) -> str:
+        end = f"{self.revolutions[-1]:.4g} turns in {self.t[-1]:.4g} s" if self.t.size else "empty"
+        return (
+            f"<Motion: {self.q.shape[1]} unknowns, {len(self.stations)} stations, {end}, "
+            f"{self.status.value}>"
+        )
+
     @property
     def stations(self) -> tuple[Station, ...]:
         """Places whose motion can be asked for by name."""

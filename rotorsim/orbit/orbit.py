@@ -165,6 +165,16 @@ class Orbit:
         """Eccentricity over radial clearance [-]."""
         return self.eccentricity / self.radial_clearance
 
+    def __repr__(self) -> str:
+        if not self.t.size:
+            return f"<Orbit: {self.thermal_model} {self.kind}, no samples, {self.status.value}>"
+        turns, top = self.angle[-1] / (2.0 * np.pi), self.speed[-1] * 30.0 / np.pi
+        return (
+            f"<Orbit: {self.thermal_model} {self.kind.replace('_', ' ')}, {turns:.4g} turns in "
+            f"{self.t[-1]:.4g} s, {top:.0f} rpm at the end, largest e/c "
+            f"{np.max(self.eccentricity_ratio):.3g}, {self.status.value}>"
+        )
+
     def _repr_html_(self) -> str:
         from .description import orbit_html
 

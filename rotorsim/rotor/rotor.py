@@ -70,6 +70,9 @@ class Rotor:
     parameters: Mapping[str, float] = field(default_factory=dict)
     source: str | None = None
 
+    def __repr__(self) -> str:
+        return f"<Rotor: {self.total_mass:.4g} kg, {len(self.nodes)} nodes, {self.size} unknowns>"
+
     def __post_init__(self) -> None:
         for name in MATRICES:
             value = _real(getattr(self, name), self._label(name), self.source)

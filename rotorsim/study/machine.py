@@ -92,6 +92,12 @@ class MachineResult:
     supports: tuple[SupportState, ...]
     statics: tuple[StaticEquilibrium, ...] = ()
 
+    def __repr__(self) -> str:
+        return (
+            f"<MachineResult: {self.description.title}; {self.thermal_model}, "
+            f"{self.speeds.size} speeds, {'converged' if self.converged else 'not all converged'}>"
+        )
+
     @property
     def converged(self) -> bool:
         """Whether every film and every static equilibrium did."""

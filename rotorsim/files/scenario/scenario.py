@@ -135,6 +135,10 @@ class Scenario:
         """What fixes the journal: an eccentricity ratio or a load."""
         return self.operating.target
 
+    def __repr__(self) -> str:
+        models = ", ".join(map(str, self.thermal_models))
+        return f"<Scenario: {self.title}; {models}; {len(self.speeds)} speeds>"
+
     @classmethod
     def from_text(cls, text: str, source: str | Path | None = None) -> Scenario:
         """Read a scenario from TOML text.

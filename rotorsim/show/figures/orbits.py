@@ -74,6 +74,19 @@ def orbit_plot(
     return figure
 
 
+def orbit_path(orbit: Orbit, title: str = "", ax: Axes | None = None) -> Figure:
+    """Draw one run in its line of contact."""
+    ax = axes_or_new(ax, (4.2, 4.4))
+    reach = 1.1 * _draw_contact(ax, orbit)
+    _draw(ax, orbit, run_names([orbit])[0], steady_only=False)
+    ax.set_aspect("equal", adjustable="box")
+    ax.set(
+        xlim=(-reach, reach), ylim=(-reach, reach), title=caption(title),
+        xlabel="x (along the load) [µm]", ylabel="y [µm]",
+    )  # fmt: skip
+    return figure_of(ax)
+
+
 def spectrum_cascade(
     cascade: Cascade, title: str = "", ax: Axes | None = None, most: int = 40
 ) -> Figure:
