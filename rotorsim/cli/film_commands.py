@@ -8,7 +8,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from ..errors import TableError
+import typer
+
+from ..errors import InputError, TableError
 from ..status import SolveStatus
 from .options import (
     ClearanceOption,
@@ -24,6 +26,7 @@ from .options import (
     check_file,
     check_workers,
     cluster,
+    file_or_shipped,
     journal_path,
     option,
     table_path,
@@ -300,6 +303,19 @@ def report(
     file: Annotated[
         Path | None, option("--output -o", "FILE", "The page.", "reports/NAME.html")
     ] = None,
+    against: Annotated[
+        Path | None,
+        option(
+            "--against",
+            "SCENARIO",
+            "Compare with another one of its kind.",
+            "none",
+            callback=lambda path: path and file_or_shipped(path),
+        ),
+    ] = None,
+    pdf: Annotated[
+        bool, typer.Option("--pdf", help="Print it as PDF too (needs Chromium, Chrome or Edge).")
+    ] = False,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:
@@ -313,19 +329,36 @@ def report(
 
     page = file or Path("reports") / f"{scenario.stem}.html"
     check_file(page, ".html", scenario)
+    if pdf:
+        from ..show.report.pdf import browser
+
+        browser()
+    if against is not None and is_machine(against) != is_machine(scenario):
+        raise InputError(
+            "must be of the same kind: a machine's file, or a bearing's", key="--against",
+            value=against,
+        )  # fmt: skip
     if is_machine(scenario):
-        return report_machine(output, scenario, page, workers)
+        return report_machine(output, scenario, page, workers, against, pdf)
     from ..files.scenario import load_scenario
     from ..show.report import write_report
+    from ..show.report.pdf import write_pdf
     from ..study.main_job import compute
 
     loaded = load_scenario(scenario)
     table = table_path(scenario, Path())
     points, coefficients = computed_table(output, loaded, table, workers, scheduler)
     results = compute(loaded, points, coefficients, output.note)
+    other = None
+    if against is not None:
+        second = load_scenario(against)
+        output.note(f"compared with {second.title}")
+        found = computed_table(output, second, table_path(against, Path()), workers, scheduler)
+        other = compute(second.replace(orbit=None), *found, output.note)
     output.note("report")
-    path = write_report(results, page)
-    output.document({"report": path, "table": table, "problems": results.problems})
+    path = write_report(results, page, other)
+    printed = {"pdf": write_pdf(path)} if pdf else {}
+    output.document({"report": path, "table": table, "problems": results.problems} | printed)
     output.show(f"{path} is written; open it in a browser")
     code = _report_points(output, points)
     for problem in results.problems:

@@ -265,19 +265,24 @@ def _say_motion(output: Output, motion: Motion, files: list[Path]) -> int:
     return INCOMPLETE if motion.status.value == "integration_failed" else DONE
 
 
-def report_machine(output: Output, path: Path, page: Path, workers: int | None) -> int:
+def report_machine(
+    output: Output, path: Path, page: Path, workers: int | None, against: Path | None, pdf: bool
+) -> int:
     """Write the report of a machine."""
     from ..show.report.machine import write_machine_report
+    from ..show.report.pdf import write_pdf
     from ..study.lateral import lateral_study
     from ..study.sensitivity import sensitivities
 
     results = _analysed(output, path, workers)
+    others = None if against is None else _analysed(output, against, workers)
     last = results[next(reversed(results))]
     study, moving = lateral_study(last), sensitivities(last, workers)
     spots = _hot_spots(output, results)
     output.note("report")
-    written = write_machine_report(results, study, page, moving, spots=spots)
-    output.document({"report": written, "notes": list(study.notes)})
+    written = write_machine_report(results, study, page, moving, spots=spots, against=others)
+    printed = {"pdf": write_pdf(written)} if pdf else {}
+    output.document({"report": written, "notes": list(study.notes)} | printed)
     output.show(f"{written} is written; open it in a browser")
     return _closing(output, results, spots)
 

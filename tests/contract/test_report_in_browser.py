@@ -5,9 +5,11 @@ from __future__ import annotations
 import pytest
 from browser import CHROMIUM, visit
 
+from rotorsim.errors import RotorsimError
 from rotorsim.files.scenario import Scenario
 from rotorsim.shipped import shipped_scenarios
 from rotorsim.show.report import write_report
+from rotorsim.show.report.pdf import write_pdf
 from rotorsim.study.main_job import compute
 from rotorsim.study.sweep import as_table, sweep_points
 
@@ -41,6 +43,16 @@ def test_the_report_shows_everything_and_asks_nobody(page, tmp_path):
     verdict = "Unstable at 15000 rpm with the rotor of 1200 kg per bearing: thd"
     for words in (verdict, "mass margin", "0.0277"):
         assert words in seen.text
+
+
+def test_the_report_is_printed(page, monkeypatch):
+    printed = write_pdf(page)
+    assert printed == page.with_suffix(".pdf")
+    assert printed.read_bytes().startswith(b"%PDF-")
+    assert printed.stat().st_size > 50_000
+    monkeypatch.setattr("rotorsim.show.report.pdf.browser", lambda: "false")
+    with pytest.raises(RotorsimError, match="did not print"):
+        write_pdf(page)
 
 
 def test_the_browser_notices_what_a_report_must_not_do(tmp_path):

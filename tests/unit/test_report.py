@@ -12,12 +12,15 @@ import pytest
 from sample_results import orbit_of
 from scenario_texts import BEARING, CONSTANT_OIL
 
+import rotorsim as rs
 from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.files.scenario import Scenario
 from rotorsim.film.heat import HeatBalance
 from rotorsim.machine.map import stability_map
 from rotorsim.orbit import Orbit
+from rotorsim.shipped import shipped_machines
 from rotorsim.show.report import html, report_page, write_report
+from rotorsim.show.report.compare import machine_comparison
 from rotorsim.show.report.results import _log_decrement
 from rotorsim.status import SolveStatus
 from rotorsim.study.main_job import Results
@@ -139,6 +142,24 @@ def test_log_decrement_is_that_of_successive_swings(results):
 
 
 @pytest.mark.slow
+def test_two_scenarios_beside_each_other(results):
+    text = TEXT.replace("A <b>bearing</b> & more", "Wider").replace('"3000 rpm", ', "")
+    text = re.sub(r"radial_clearance = .*", 'radial_clearance = "120 um"', text)
+    scenario = Scenario.from_text(text)
+    points = sweep_points(list(scenario.cases()), list(scenario.speeds), workers=1)
+    table = as_table(points, scenario)
+    other = Results(scenario, table, tuple(points), tuple(stability_curves(table, scenario.rotor)))
+    words = Checker(report_page(results, against=other)).words
+    said = words[words.index("Compared with Wider") : words.index("Inputs")]
+    assert said[said.index("radial clearance") + 2] == "120 µm"
+    at = said.index("load [kN]")
+    mine, theirs = (float(said[at + k]) for k in (1, 2))
+    assert said[at + 3] == f"{100.0 * (mine / theirs - 1.0):+.1f} %"
+    assert said[said.index("eccentricity ratio [-]") + 3] == "same"
+    same = Checker(report_page(results, against=results)).words
+    assert "Inputs: no difference." in same
+
+
 def test_stable_incomplete_and_unknown_are_told_apart(results, points, scenario):
     table = results.table
     light = replace(results, curves=tuple(stability_curves(table, 10.0)))
@@ -249,3 +270,16 @@ def test_results_show_themselves_in_notebooks(results, points):
     assert "stable" in said["map"]
     assert "largest eccentricity ratio 0.1" in said["orbit"]
     assert "constant speed" in said["orbit"]
+
+
+def test_two_machines_beside_each_other():
+    machine = rs.load_machine(shipped_machines()["machines/friswell"])
+    other = type(machine).from_text(machine.text.replace('"350 mm"', '"300 mm"'))
+    mine, theirs = (rs.analyse_machine(one, workers=1) for one in (machine, other))
+    said = Checker(f"<div>{machine_comparison(mine, theirs)}</div>").words
+    assert "given: verdict at the highest speed" in said
+    changed = next(text for text in said if "@@" in text)
+    assert '-outer_diameter = "300 mm"' in changed
+    assert '+outer_diameter = "350 mm"' in changed
+    same = Checker(f"<div>{machine_comparison(mine, mine)}</div>").words
+    assert "The files are the same." in same

@@ -15,6 +15,7 @@ from ...atomic import write_text
 from ...rows import RPM, Row, facts_html, heads, number, shown, table_html, with_unit
 from ...study import machine_tables as tables
 from . import html
+from .compare import machine_comparison
 
 if TYPE_CHECKING:
     from ...study.hot_spot import HotSpotStudy
@@ -50,20 +51,21 @@ _PLACES = {
 def write_machine_report(
     results: dict[str, MachineResult], study: LateralStudy, path: str | Path,
     moving: Sequence[Sensitivity] = (), when: datetime.datetime | None = None,
-    spots: HotSpotStudy | None = None,
+    spots: HotSpotStudy | None = None, against: dict[str, MachineResult] | None = None,
 ) -> Path:  # fmt: skip
     """Write the report of a machine's results, whole or not at all.
 
     results : By thermal model; modes, response and checks are those of the last.
     moving : Sensitivities of its threshold.
     spots : Its hot spots.
+    against : Results of another machine, to compare with.
     """
     from .page import document
 
     last = results[next(reversed(results))]
     title = last.description.title
     target = Path(path)
-    parts = _parts(results, study, moving, when, spots)
+    parts = _parts(results, study, moving, when, spots, against)
     write_text(target, document(title, "\n".join(part for part in parts if part)))
     return target
 
@@ -71,6 +73,7 @@ def write_machine_report(
 def _parts(
     results: dict[str, MachineResult], study: LateralStudy, moving: Sequence[Sensitivity],
     when: datetime.datetime | None, spots: HotSpotStudy | None,
+    against: dict[str, MachineResult] | None,
 ) -> Iterator[str]:  # fmt: skip
     last = results[next(reversed(results))]
     machine = last.description
@@ -81,6 +84,8 @@ def _parts(
     warnings = [*tables.failure_lines(results), *study.notes]
     none = html.paragraph("None: every film and every static equilibrium converged.")
     yield html.section("Warnings", html.listing(warnings, "warnings") or none)
+    if against is not None:
+        yield machine_comparison(results, against)
     yield html.section("Rotor", *figures["rotor"], _rotor(last), _shaft_tables(last))
     yield html.section("Bearings at their load", _bearings(results), _statics(last))
     yield html.section(

@@ -15,6 +15,7 @@ from ...bearing.table_data import CONVENTIONS
 from ...rows import RPM, facts_html
 from ...study.inputs import input_rows
 from . import html, results
+from .compare import comparison
 from .verdict import headline
 
 if TYPE_CHECKING:
@@ -50,20 +51,26 @@ _MODEL_LIMITS = (
 )
 
 
-def write_report(found: Results, path: str | Path) -> Path:
-    """Write the report of a scenario's results, whole or not at all."""
+def write_report(found: Results, path: str | Path, against: Results | None = None) -> Path:
+    """Write the report of a scenario's results, whole or not at all.
+
+    against : Those of another scenario, to compare with.
+    """
     target = Path(path)
-    write_text(target, report_page(found))
+    write_text(target, report_page(found, against=against))
     return target
 
 
-def report_page(found: Results, when: datetime.datetime | None = None) -> str:
+def report_page(
+    found: Results, when: datetime.datetime | None = None, against: Results | None = None
+) -> str:
     """Give the report as HTML that needs no other file and no network.
 
     found : What `rotorsim.study.main_job.compute` gives.
     when : Date of the report; now by default.
+    against : Results to compare with.
     """
-    body = "\n".join(part for part in _parts(found, when) if part)
+    body = "\n".join(part for part in _parts(found, when, against) if part)
     return document(found.scenario.title, body)
 
 
@@ -82,12 +89,16 @@ def document(title: str, body: str) -> str:
     )
 
 
-def _parts(found: Results, when: datetime.datetime | None) -> Iterator[str]:
+def _parts(
+    found: Results, when: datetime.datetime | None, against: Results | None
+) -> Iterator[str]:
     scenario = found.scenario
     figures = _figures(found)
     yield f"<header>\n<h1>{escape(scenario.title)}</h1>\n{_origin(found, when)}\n</header>"
     yield headline(found)
     yield html.section("Warnings", html.listing(_warnings(found), "warnings") or _no_warnings())
+    if against is not None:
+        yield comparison(found, against)
     yield html.section("Inputs", _inputs(scenario))
     yield html.section(
         "Margins",
