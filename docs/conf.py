@@ -17,11 +17,12 @@ author = "The rotorsim developers"
 copyright = "The rotorsim developers, MIT license"
 version = release = rotorsim.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "mathml"]
 exclude_patterns = ["_build", "_generated", "validation", "data"]
 
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
 myst_heading_anchors = 3
+nb_execution_mode = "off"  # notebooks hold their results; a test executes them
 html_math_renderer = "mathml"
 
 napoleon_google_docstring = False
