@@ -236,17 +236,37 @@ QUANTITIES = {
 """By the name of the attribute, JSON key or table variable (SI)."""
 
 
-def quantity(name: str) -> Quantity:
+_BASES = {
+    "m": ("mm", 1e3, 0.0), "rad": ("°", 180.0 / math.pi, 0.0), "Pa": ("MPa", 1e-6, 0.0),
+    "Pa*s": ("mPa s", 1e3, 0.0), "K": ("°C", 1.0, -ZERO_CELSIUS), "N": ("kN", 1e-3, 0.0),
+    "N/m": ("MN/m", 1e-6, 0.0), "m^3/s": ("L/min", 6e4, 0.0),
+}  # fmt: skip
+"""How entries of files without a name in `QUANTITIES` are shown, by their SI unit."""
+
+
+def quantity(name: str, unit: str = "") -> Quantity:
     """Return how a quantity is shown, by its name.
 
-    Of a machine's parameter ``left.load`` with its owner.
+    Of a machine's parameter ``left.load``, or an entry ``bearing.pocket[0].depth``, with its owner.
+
+    unit : SI unit, of an entry that no result is called like.
 
     Examples
     --------
     >>> quantity("left.radial_clearance").said(1e-4), quantity("speed").said(100.0)
     ('left c = 100 µm', '955 rpm')
+    >>> quantity("bearing.pocket[0].depth", "m").said(1e-4)
+    'pocket[0] depth = 100 µm'
     """
     owner, _, word = name.rpartition(".")
+    if word not in QUANTITIES:
+        owner, label = owner.rpartition(".")[2], word.replace("_", " ")
+        base, factor, zero = _BASES.get(
+            unit, (unit.replace("*", " ") if unit != "1" else "", 1.0, 0.0)
+        )
+        if base == "mm" and "depth" in word:
+            base, factor = "µm", 1e6
+        return Quantity(f"{label}, {owner}", label, base, factor, zero, owner=owner)
     found = QUANTITIES[word]
     return replace(found, label=f"{found.label}, {owner}", owner=owner) if owner else found
 

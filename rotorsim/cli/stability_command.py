@@ -225,6 +225,10 @@ def stability(
     With --x and --y: a map over any two inputs; what a table does not hold is solved.
     rotorsim stability scenarios/elliptical.toml --x speed --y load -o maps
 
+    Or over entries of the scenario's file:
+    rotorsim stability pressure_dam --mass "400 kg" --x speed --y "bearing.pocket[0].depth"
+    --y-values "50 um : 300 um : 6"
+
     With --tolerances or --tolerance: what tolerances do to the threshold.
     rotorsim stability scenarios/elliptical.toml --tolerance "radial_clearance=5 um"
 
@@ -312,7 +316,7 @@ class _Work:
             table = given_table(self.output, self.source, self.bearing)
             if self.speeds is None:
                 return table
-            return table.with_speeds(_read_values(self.speeds, _Axis.SPEED, "--speeds"))
+            return table.with_speeds(_read_values(self.speeds, *_AXES[_Axis.SPEED][1:], "--speeds"))
         kind = kind_of(self.source)
         if kind not in (None, FileKind.SCENARIO):
             message = f"{sentence(kind)}; here a table or a scenario is needed"
@@ -349,11 +353,17 @@ def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[flo
     for key, (text, values) in texts.items():
         if text is None:
             raise InputError("a map needs both --x and --y", key=key)
-        axis = _axis_named(text, key)
-        name = _AXES[axis][0]
+        name, kind, example = _axis_named(text, key)
         if name in found:
-            raise InputError("must differ from --x", key=key, value=axis.value)
-        found[name] = None if values is None else _read_values(values, axis, f"{key}-values")
+            raise InputError("must differ from --x", key=key, value=text)
+        found[name] = None
+        if values is not None:
+            found[name] = _read_values(values, kind, example, f"{key}-values", "." in name)
+        elif "." in name:
+            raise InputError(
+                "is missing: an entry of the file needs values, a list or start : stop : count",
+                key=f"{key}-values",
+            )
     return found
 
 
@@ -365,7 +375,7 @@ def _show_plane(work: _Work, plane: Plane, title: str) -> int:
     if work.folder is not None:
         from ..bearing.netcdf import write
 
-        document["files"] = [write(plane.dataset, work.folder / f"map_{plane.x}_{plane.y}.nc")]
+        document["files"] = [write(plane.dataset, work.folder / f"{plane.file_name}.nc")]
     work.finish(document, plane_figures(plane, title), lambda: plane_table(plane))
     return _report_failed(work.output, plane.failed_points, plane.solved_points)
 
@@ -583,22 +593,38 @@ def _scenario_of(work: _Work, table: CoefficientTable) -> Scenario | None:
         return None
 
 
-def _axis_named(text: str, key: str) -> _Axis:
-    """Return the axis by its name here, in a table or in a scenario."""
+def _axis_named(text: str, key: str) -> tuple[str, str | None, str]:
+    """Return dimension, kind and example of an axis, by its name here, in a table or a scenario."""
+    from ..files.scenario import Scenario
+    from ..files.scenario.scenario import entry_kind
+    from ..units import QUANTITIES
+
     for axis, (dimension, *_) in _AXES.items():
         if text.replace("_", "-") in (axis.value, dimension.replace("_", "-")):
-            return axis
-    raise InputError(f"must be one of {', '.join(_Axis)}", key=key, value=text)
+            return _AXES[axis]
+    try:
+        name, kind = entry_kind(Scenario, text)
+    except InputError as error:
+        raise InputError(
+            f"must be one of {', '.join(_Axis)}, or an entry of the scenario's file "
+            f"(bearing.pocket[0].depth); {error.message}", key=key, value=text,
+        ) from None  # fmt: skip
+    return name, kind, "0.5" if kind is None else QUANTITIES[kind].example
 
 
-def _read_values(text: str, axis: _Axis, key: str) -> list[float]:
+def _read_values(
+    text: str, kind: str | None, example: str, key: str, any_sign: bool = False
+) -> list[float]:
     """Return the ascending values [SI] of ``--x-values`` and ``--y-values``."""
-    _, kind, example = _AXES[axis]
+    from ..units import parse_quantity
 
     def value(word: str) -> float:
-        found = positive(word, kind, key, example)
-        assert found is not None
-        return found
+        if kind is not None:
+            return parse_quantity(word, kind, key=key, example=example)
+        try:
+            return float(word)
+        except ValueError:
+            raise InputError("must be plain numbers", key=key, value=word) from None
 
     parts = [part.strip() for part in text.split(":")]
     if len(parts) == 3:
@@ -615,6 +641,8 @@ def _read_values(text: str, axis: _Axis, key: str) -> list[float]:
         raise InputError(message, key=key, value=text)
     if len(values) > _MOST_VALUES or any(b <= a for a, b in pairwise(values)):
         raise InputError(f"must ascend, at most {_MOST_VALUES} values", key=key, value=text)
+    if values[0] <= 0.0 and not any_sign:
+        raise InputError("must be above 0", key=key, value=text)
     return values
 
 

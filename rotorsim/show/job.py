@@ -368,8 +368,7 @@ def plane_figures(plane: Plane, title: str = "") -> Iterator[tuple[str, Figure]]
     from .figures import stability_map
 
     heading = "\n".join(text for text in (title, held_text(plane.held)) if text)
-    name = f"map_{plane.x}_{plane.y}"
-    yield name, stability_map(plane.dataset, plane.x, plane.y, title=heading)
+    yield plane.file_name, stability_map(plane.dataset, plane.x, plane.y, title=heading)
 
 
 def tolerance_figures(study: ToleranceStudy, title: str = "") -> Iterator[tuple[str, Figure]]:

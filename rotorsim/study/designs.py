@@ -30,6 +30,7 @@ from ..files.scenario.scenario import entry_kind
 from ..model import ThermalModel, preferred_model
 from ..model.entries import choice
 from ..units import QUANTITIES, parse_quantity
+from .planes import OTHERWISE
 from .stability import stability_curves
 from .sweep import as_table, model_digest, refuse_other_sources, stream, sweep_points
 
@@ -45,7 +46,6 @@ RESULTS = (
     "min_film_thickness", "max_pressure", "max_temperature", "power_loss", "side_flow",
 )  # fmt: skip
 """Results of a design in SI, at its highest speed but for the threshold."""
-_OTHERWISE = {"orbit": None, "stability": None, "tolerances": None, "study": None}
 _BATCH = 4
 """Designs that travel to a worker together."""
 _HEADER = "# rotorsim study"
@@ -150,7 +150,7 @@ def run_study(
             key="study",
         )
     model = choice(ThermalModel, thermal_model or preferred_model(scenario.thermal_models))
-    base = scenario.replace(**_OTHERWISE, thermal_model=str(model))
+    base = scenario.replace(**OTHERWISE, thermal_model=str(model))
     variables = tuple(_variable(base, one) for one in settings.vary)
     design = _Design(base.text, scenario.source, tuple(v.name for v in variables), model_digest())
     count, path = samples or settings.samples, Path(path)

@@ -1,14 +1,15 @@
-"""Stability over any two of speed, mass, clearance, load and supply temperature."""
+"""Stability over any two of speed, mass, clearance, load, and entries of a bearing's file."""
 
 from __future__ import annotations
 
 import dataclasses
 import itertools
 import math
+import re
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -25,6 +26,7 @@ from ..model import (
     WaltherViscosity,
 )
 from ..rows import Quantity, quantity
+from ..units import QUANTITIES as KINDS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -38,6 +40,12 @@ if TYPE_CHECKING:
 _FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
 """What the film must be solved again for."""
 _DIMENSIONS = ("speed", "mass", *_FILM_DIMENSIONS)
+_OWN_AXES = {
+    "operating.speed": "speed", "rotor.mass": "mass", "operating.load": "applied_load",
+    "bearing.radial_clearance": "radial_clearance",
+    "thermal.supply_temperature": "supply_temperature",
+}  # fmt: skip
+"""Entries that are dimensions of their own."""
 _CELLS = 101
 _SPEEDS = 12
 
@@ -73,10 +81,16 @@ class Plane:
         return x, y
 
     @property
+    def file_name(self) -> str:
+        """Of its files, without a suffix."""
+        return re.sub(r"[^\w.-]+", "_", f"map_{self.x}_{self.y}")
+
+    @property
     def quantities(self) -> tuple[Quantity, Quantity]:
         """How x and y are shown."""
-        x, y = self.names
-        return quantity(x), quantity(y)
+        units = (self.dataset[n].attrs.get("units", "") for n in (self.x, self.y))
+        first, second = map(quantity, self.names, units)
+        return first, second
 
     def values(self, name: str, model: str) -> Array:
         """Return the variable of one thermal model, (n_x, n_y)."""
@@ -117,9 +131,10 @@ def plane_of_scenario(
 ) -> Plane:
     """Solve the film where the plane needs it, and map the stability in between.
 
-    x, y : Two of `_DIMENSIONS`.
+    x, y : Two of `_DIMENSIONS`, or entries of the scenario's file (``bearing.pocket[0].depth``).
     values : Values along x and y, ascending (SI). For what changes the film these are solved; the
-        map goes from the first to the last. The scenario's, or a span about them, by default.
+        map goes from the first to the last. The scenario's, or a span about them, by default; an
+        entry's must be given.
     held : Values of the others; the scenario's by default, of the speed its highest.
     thermal_models : The scenario's by default.
     mesh : In place of the scenario's.
@@ -127,11 +142,11 @@ def plane_of_scenario(
     executor, workers, progress : As for `rotorsim.tabulate`.
     Raises InputError: Axes alike or unknown, or something left open.
     """
-    _check_plane(x, y, held)
+    entries = _check_plane(x, y, held, scenario)
     given = {**(values or {}), **{name: [value] for name, value in (held or {}).items()}}
     axes = {
         name: _film_values(scenario, name, given.get(name), on_axis=name in (x, y))
-        for name in _FILM_DIMENSIONS
+        for name in (*_FILM_DIMENSIONS, *entries)
         if name in (x, y) or name in given or name == "radial_clearance"
     }
     speeds = np.asarray(given.get("speed", scenario.speeds if "speed" in (x, y) else []))
@@ -209,14 +224,38 @@ def plane_of_table(
     return Plane(x, y, kept, dataset, size, failed)
 
 
-def _check_plane(x: str, y: str, held: Mapping[str, float] | None) -> None:
+def _check_plane(
+    x: str, y: str, held: Mapping[str, float] | None, scenario: Scenario | None = None
+) -> list[str]:
+    """Return those of the axes that are entries of the scenario's file."""
+    entries = []
     for key, name in (("x", x), ("y", y)):
-        if name not in _DIMENSIONS:
+        if name not in _DIMENSIONS and scenario is not None:
+            entries.append(_entry_axis(scenario, name, key))
+        elif name not in _DIMENSIONS and "." not in name:  # a table may have such a dimension
             raise InputError(f"must be one of {', '.join(_DIMENSIONS)}", key=key, value=name)
         if name in (held or {}):
             raise InputError("is an axis of the map and cannot be held as well", key=name)
     if x == y:
         raise InputError("must differ from x", key="y", value=y)
+    return entries
+
+
+def _entry_axis(scenario: Scenario, name: str, key: str) -> str:
+    """Return an entry's name as the table's dimension is called."""
+    from ..files.scenario.scenario import entry_kind
+
+    try:
+        written, _ = entry_kind(type(scenario), name)
+    except InputError as error:
+        known = ", ".join(_DIMENSIONS)
+        raise InputError(
+            f"must be one of {known}, or an entry of the scenario's file; {error.message}",
+            key=key, value=name,
+        ) from None  # fmt: skip
+    if written in _OWN_AXES:
+        raise InputError(f"is called {_OWN_AXES[written]} here", key=key, value=name)
+    return name
 
 
 def _film_values(
@@ -228,6 +267,8 @@ def _film_values(
         if on_axis and len(found) < 2:
             raise InputError("an axis needs two values or more", key=name, value=found)
         return found
+    if name not in _FILM_DIMENSIONS:
+        raise InputError("is missing: an entry of the file needs values along its axis", key=name)
     if name == "radial_clearance":
         own = list(scenario.radial_clearances)
         if not on_axis and len(own) > 1:
@@ -287,6 +328,8 @@ _UNITS = {"applied_load": "N", "supply_temperature": "K"}
 COARSE = MeshSize(circumferential=48, axial=12, cross_film=8, bush_radial=8)
 """Mesh for many solutions in a short time: critical masses within some per cent."""
 _VISCOSITY_LIMITS = (1e-7, 1e5)
+OTHERWISE = {"orbit": None, "stability": None, "tolerances": None, "study": None}
+"""What is not asked for where an entry varies."""
 
 
 def _with_supply_temperature(case: Case, temperature: float) -> Case:
@@ -370,10 +413,10 @@ def tabulate_over(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> CoefficientTable:
-    """Solve the film over clearance, load and supply temperature as well as speed.
+    """Solve the film over clearance, load, supply temperature and entries as well as speed.
 
-    axes : ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K]: ascending
-        values. What is missing keeps the scenario's.
+    axes : ``radial_clearance`` [m], ``applied_load`` [N], ``supply_temperature`` [K], or entries of
+        the scenario's file: ascending values (SI). What is missing keeps the scenario's.
     speeds : [rad/s]; the scenario's by default.
     thermal_models : The scenario's by default.
     mesh : In place of the scenario's.
@@ -385,23 +428,26 @@ def tabulate_over(
     from ..bearing.table import CoefficientTable
     from .sweep import as_table, sweep_points
 
-    _check_axes(axes)
-    scenario = scenario if mesh is None else with_mesh(scenario, mesh)
+    units = _check_axes(axes, scenario)
     models = list(thermal_models or scenario.thermal_models)
     clearances = axes.get("radial_clearance", scenario.radial_clearances)
-    extra = [name for name in _UNITS if name in axes]
+    extra = list(units)
     places = list(itertools.product(*(axes[name] for name in extra)))
     cases = []
     for place in places:
+        given = dict(zip(extra, place, strict=True))
+        entries = {name: given.pop(name) for name in extra if name not in _UNITS}
+        other = scenario.replace(**OTHERWISE, **entries) if entries else scenario
+        other = other if mesh is None else with_mesh(other, mesh)
         for model, clearance in itertools.product(models, clearances):
-            case = scenario.case(scenario.radial_clearances[0], model)
-            given = {"radial_clearance": clearance, **dict(zip(extra, place, strict=True))}
-            cases.append(changed(case, given))
+            case = other.case(other.radial_clearances[0], model)
+            cases.append(changed(case, {"radial_clearance": clearance, **given}))
     wanted = [float(s) for s in (scenario.speeds if speeds is None else speeds)]
     points = sweep_points(cases, wanted, executor=executor, workers=workers, progress=progress)
     size = len(points) // len(places)
+    own = scenario if mesh is None else with_mesh(scenario, mesh)
     tables = {
-        place: as_table(points[first * size : (first + 1) * size], scenario)
+        place: as_table(points[first * size : (first + 1) * size], own)
         for first, place in enumerate(places)
     }
     for name in reversed(extra):
@@ -410,7 +456,7 @@ def tabulate_over(
                 [tables[*place, value] for value in axes[name]],
                 name,
                 list(axes[name]),
-                _UNITS[name],
+                units[name],
             )
             for place in dict.fromkeys(key[:-1] for key in tables)
         }
@@ -418,12 +464,19 @@ def tabulate_over(
     return table
 
 
-def _check_axes(axes: Mapping[str, Sequence[float]]) -> None:
-    allowed: dict[str, Any] = {"radial_clearance": None, **_UNITS}
+def _check_axes(axes: Mapping[str, Sequence[float]], scenario: Scenario) -> dict[str, str]:
+    """Return the units of the table's further dimensions."""
+    from ..files.scenario.scenario import entry_kind
+
+    units = {name: unit for name, unit in _UNITS.items() if name in axes}
     for name, values in axes.items():
-        if name not in allowed:
-            raise InputError(f"must be one of {', '.join(allowed)}", key=name)
-        if not len(values) or any(not (math.isfinite(v) and v > 0.0) for v in values):
+        least = 0.0
+        if name not in ("radial_clearance", *_UNITS):
+            _entry_axis(scenario, name, name)
+            kind = entry_kind(type(scenario), name)[1]
+            units[name], least = ("1" if kind is None else KINDS[kind].unit), -math.inf
+        if not len(values) or any(not (math.isfinite(v) and v > least) for v in values):
             raise InputError("must be one or more numbers above 0", key=name, value=list(values))
         if any(after <= before for before, after in itertools.pairwise(values)):
             raise InputError("must ascend", key=name, value=list(values))
+    return units

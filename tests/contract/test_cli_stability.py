@@ -215,6 +215,21 @@ def test_map_over_speed_and_load_is_solved_from_the_scenario(here):
     assert all(Path(name).exists() for name in said["files"])
 
 
+def test_map_over_an_entry_of_the_file(here):
+    done = here(
+        "stability", "small.toml", "--x", "speed", "--y", "bearing.length", "--y-values",
+        "60 mm, 80 mm", "--cells", "5", "-m", "isothermal", "--workers", "1", "--json", "-o", "m",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    said = strict(done.stdout)
+    assert said["map"]["y"] == "bearing.length"
+    assert said["map"]["y_values"] == pytest.approx([0.06, 0.065, 0.07, 0.075, 0.08])
+    assert all(Path(name).stem == "map_speed_bearing.length" for name in said["files"])
+    missing = here("stability", "small.toml", "--x", "speed", "--y", "bearing.length")
+    assert missing.returncode == 2
+    assert "--y-values: is missing" in missing.stderr
+
+
 def test_map_at_solved_points_is_what_solve_says(here):
     done = here(
         "stability", "small.toml", "--x", "load", "--y", "clearance", "--x-values", "8 kN, 12 kN",

@@ -21,7 +21,7 @@ from rotorsim.model.tolerances import ToleranceSettings, parse_spread
 from rotorsim.rotor import Rotor
 from rotorsim.show.figures import tolerance_histograms
 from rotorsim.status import SolveStatus
-from rotorsim.study.planes import changed, tabulate_over
+from rotorsim.study.planes import changed, plane_of_scenario, tabulate_over, with_mesh
 from rotorsim.study.tolerances import _FilmThreshold, _tolerances_of, study_tolerances
 
 HEAD = f'title = "small"\n{BEARING}'
@@ -124,6 +124,69 @@ def test_clearance_may_be_any(scenario):
     assert table.dataset["radial_clearance"].values.tolist() == [8e-5, 1.3e-4]
     assert "circumferential 36" in table.dataset.attrs["mesh"]
     assert table.extra_dimensions == ()
+
+
+DAMS = (
+    PLAIN
+    + """
+[[bearing.groove]]
+center = "270 deg"
+extent = "20 deg"
+[[bearing.groove]]
+center = "90 deg"
+extent = "20 deg"
+[[bearing.pocket]]
+start = "100 deg"
+end = "200 deg"
+depth = "80 um"
+length = "50 mm"
+[[bearing.pocket]]
+start = "-60 deg"
+end = "60 deg"
+depth = "50 um"
+length = "10 mm"
+"""
+)
+
+
+def test_one_of_a_list_is_named_by_its_number():
+    scenario = Scenario.from_text(DAMS)
+    found = scenario.replace(**{"bearing.pocket[1].depth": 4e-5}).bearing.pockets
+    assert [pocket.depth for pocket in found] == [8e-5, 4e-5]
+    for name in ("bearing.pocket.depth", "bearing.pocket[2].depth"):
+        with pytest.raises(InputError, match=re.escape("say which, pocket[0] to pocket[1]")):
+            scenario.replace(**{name: 4e-5})
+
+
+def test_table_over_an_entry_holds_the_films_solved_one_by_one():
+    scenario, depths = Scenario.from_text(DAMS), [4e-5, 1.2e-4]
+    name, mesh = "bearing.pocket[0].depth", MeshSize(48, 12, 6, 4)
+    table = tabulate_over(
+        scenario, {name: depths}, [900.0], thermal_models=["isothermal"], mesh=mesh, workers=1
+    )
+    assert table.extra_dimensions == (name,)
+    assert table.dataset[name].attrs["units"] == "m"
+    for depth in depths:
+        other = with_mesh(scenario.replace(**{name: depth}), mesh)
+        alone, _ = solve_case(other.case(thermal_model="isothermal"), 900.0)
+        found = table.at(900.0, **{name: depth})
+        assert np.allclose(found.stiffness, alone.stiffness, rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("y", "values", "said"),
+    [
+        ("bearing.pocket[0].depth", None, "needs values"),
+        ("bearing.radial_clearance", [1e-4, 2e-4], "is called radial_clearance here"),
+        ("bearing.pocket.dept", [1e-4, 2e-4], "or an entry of the scenario's file"),
+    ],
+)
+def test_bad_entries_as_axes(y, values, said):
+    with pytest.raises(InputError, match=said):
+        plane_of_scenario(
+            Scenario.from_text(DAMS), "speed", y, {} if values is None else {y: values},
+            {"mass": 100.0},
+        )  # fmt: skip
 
 
 @pytest.mark.parametrize(

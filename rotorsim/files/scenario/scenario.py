@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -348,8 +349,8 @@ def _changed_text(text: str, root: Any, changes: Mapping[str, object]) -> str:
         inner = tables
         for part in path[:-1]:
             inner = inner.setdefault(part, {})
-            if not isinstance(inner, dict):
-                raise InputError("is one of several; give the whole list", key=name)
+            if isinstance(inner, list):
+                inner = _one_of_several(inner, part, name)
         if value is None:
             inner.pop(path[-1], None)
             continue
@@ -360,10 +361,26 @@ def _changed_text(text: str, root: Any, changes: Mapping[str, object]) -> str:
     return to_toml(tables)
 
 
+_NUMBER = re.compile(r"\[(\d+)\]")
+
+
+def _one_of_several(several: list, part: str, name: str) -> dict[str, Any]:
+    """Return the table of a list that a name like ``bearing.pocket[0].depth`` means."""
+    asked = re.search(rf"\b{part}{_NUMBER.pattern}", name)
+    number = int(asked[1]) if asked else 0
+    if (asked is None and len(several) != 1) or number >= len(several):
+        last = len(several) - 1
+        raise InputError(
+            f"is one of several: say which, {part}[0] to {part}[{last}], or give the whole list",
+            key=name,
+        )
+    return several[number]
+
+
 def _path(root: Any, name: str) -> tuple[str, ...]:
-    """Return the table and key of a name, with or without its table."""
+    """Return the table and key of a name, with or without its table, numbers in lists left out."""
     tables = tables_of(root)
-    *table, key = str(_ALSO.get(name, name)).split(".")
+    *table, key = _NUMBER.sub("", str(_ALSO.get(name, name))).split(".")
     if not table and key in tables[()]:
         return (key,)
     places = [tuple(table)] if table else [(one,) for one in _ORDER]
@@ -381,7 +398,9 @@ def entry_kind(root: Any, name: str) -> tuple[str, str | None]:
     """
     path = _path(root, name)
     entry = _entry(root, path)
-    return ".".join(path), None if entry is None else _kind(entry)
+    plain = ".".join(path)
+    written = name if _NUMBER.search(name) else plain
+    return written, None if entry is None else _kind(entry)
 
 
 def _entry(root: Any, path: tuple[str, ...]) -> Entry | None:

@@ -85,7 +85,10 @@ def stability_map(
     }
     first, second = rates[cold], rates[hot]
     known = np.isfinite(first) & np.isfinite(second)
-    shown_as = [quantity(str(chart[name].attrs.get("parameter", name))) for name in (x, y)]
+    shown_as = [
+        quantity(str(chart[name].attrs.get("parameter", name)), chart[name].attrs.get("units", ""))
+        for name in (x, y)
+    ]
     along, across = shown_as[0].shown(along), shown_as[1].shown(across)
     ax.set_facecolor("#bbbbbb")
     # A region is where the least of its (signed) growth rates is positive: smooth borders.
