@@ -107,6 +107,24 @@ def _bearing(scenario: Scenario) -> _Rows:
                 f"long, {' to '.join(deep)} deep",
             )
         )
+    for place, texture in enumerate(bearing.textures, start=1):
+        rows.append(
+            Row(
+                f"texture {place}",
+                f"{_degrees(texture.start)} to {_degrees(texture.end)}, {texture.around} x "
+                f"{texture.along} dimples, {_micrometres(texture.depth)} deep, on "
+                f"{number(100.0 * texture.area_share)} % of the area",
+            )
+        )
+    if bearing.compliance is not None:
+        given = bearing.compliance
+        rows.append(
+            Row(
+                "bore gives way",
+                f"{given.kind}, {_millimetres(given.thickness)} thick, "
+                f"{number(given.youngs_modulus / 1e9)} GPa",
+            )
+        )
     if not bearing.grooves and not bearing.arcs:
         rows.append(Row("bore", "plain, 360°"))
     if any(bearing.misalignment):

@@ -300,3 +300,35 @@ def test_energy_of_a_developed_film():
     area = 2.0 * math.pi * RADIUS * case.bearing.length
     power = (1500.0 * RADIUS) ** 2 / (CLEARANCE * shear) * area
     assert balance.dissipation == pytest.approx(power, rel=1e-3)
+
+
+def _random_case(rng, flow):
+    """Bearing of any size, oil and load, and the speed at which its film has a Reynolds number."""
+    ratio, slenderness = rng.uniform(6e-4, 3e-3), rng.uniform(0.3, 1.2)
+    radius, eccentricity = 10.0 ** rng.uniform(-2.0, -0.5), rng.uniform(0.05, 0.95)
+    cavitation = rng.choice(["half_sommerfeld", "reynolds", "jfo"])
+    case = isothermal_case(float(eccentricity), mesh=(48, 10), cavitation=str(cavitation))
+    bearing = Bearing(radius, 2.0 * radius * slenderness, ratio * radius)
+    reynolds, surface_speed = 10.0 ** rng.uniform([0.0, 0.0], [5.0, 2.2])
+    viscosity = case.lubricant.density * surface_speed * ratio * radius / reynolds
+    case = with_flow(replace(case, bearing=bearing), flow, viscosity=float(viscosity))
+    return case, surface_speed / radius
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flow", LAWS)
+def test_random_bearings_from_laminar_to_turbulent(flow):
+    """Converged or with a cause; neither force nor coefficients jump with the speed."""
+    rng = np.random.default_rng(7)
+    converged = 0
+    for _ in range(40):
+        case, speed = _random_case(rng, flow)
+        here, there = (solve_case(case, speed * share)[0] for share in (1.0, 1.001))
+        if not (here.converged and there.converged):
+            assert here.message or there.message
+            continue
+        converged += 1
+        assert abs(there.load - here.load) < 0.02 * here.load
+        for one, two in ((here.stiffness, there.stiffness), (here.damping, there.damping)):
+            assert np.abs(two - one).max() < 0.05 * np.abs(one).max()
+    assert converged >= 36
