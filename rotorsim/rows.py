@@ -239,7 +239,7 @@ QUANTITIES = {
 _BASES = {
     "m": ("mm", 1e3, 0.0), "rad": ("°", 180.0 / math.pi, 0.0), "Pa": ("MPa", 1e-6, 0.0),
     "Pa*s": ("mPa s", 1e3, 0.0), "K": ("°C", 1.0, -ZERO_CELSIUS), "N": ("kN", 1e-3, 0.0),
-    "N/m": ("MN/m", 1e-6, 0.0), "m^3/s": ("L/min", 6e4, 0.0),
+    "N/m": ("MN/m", 1e-6, 0.0), "N*s/m": ("kN s/m", 1e-3, 0.0), "m^3/s": ("L/min", 6e4, 0.0),
 }  # fmt: skip
 """How entries of files without a name in `QUANTITIES` are shown, by their SI unit."""
 
@@ -266,7 +266,8 @@ def quantity(name: str, unit: str = "") -> Quantity:
         )
         if base == "mm" and "depth" in word:
             base, factor = "µm", 1e6
-        return Quantity(f"{label}, {owner}", label, base, factor, zero, owner=owner)
+        whole = f"{label}, {owner}" if owner else label
+        return Quantity(whole, label, base, factor, zero, owner=owner)
     found = QUANTITIES[word]
     return replace(found, label=f"{found.label}, {owner}", owner=owner) if owner else found
 

@@ -56,6 +56,7 @@ _KINDS = (
     _Kind("force", "N", "10 kN", 1e-9, 1e12),
     _Kind("stiffness", "N/m", "10 MN/m", 1e-9, 1e15),
     _Kind("damping", "N*s/m", "200 N*s/m", 1e-9, 1e12),
+    _Kind("power", "W", "20 kW", 1e-9, 1e12),
     _Kind("torque", "N*m", "200 N*m", 1e-12, 1e12),
     _Kind("rotational damping", "N*m*s", "0.1 N*m*s", 1e-15, 1e12),
     _Kind("acceleration", "m/s^2", "10 m/s^2", 1e-9, 1e6),

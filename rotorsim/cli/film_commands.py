@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections import Counter
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
+    from ..study.measured import Measured
 
 
 _MANY = 4
@@ -247,10 +249,17 @@ def _report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     return INCOMPLETE if bad else DONE
 
 
+MeasuredOption = Annotated[
+    Path | None,
+    option("--measured", "FILE", "CSV of measured points, drawn over the curves.", "none"),
+]
+
+
 def run(
     output: Output,
     scenario: ScenarioArgument,
     folder: OutputFolder = Path(),
+    measured: MeasuredOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:
@@ -261,12 +270,13 @@ def run(
     from .machine_commands import is_machine, run_machine
 
     if is_machine(scenario):
+        _not_of_machines(measured)
         return run_machine(output, scenario, folder, workers)
     from ..files.scenario import load_scenario
     from ..show.job import write_results
     from ..study.main_job import compute, summary
 
-    loaded = load_scenario(scenario)
+    loaded, seen = load_scenario(scenario), _measured(measured)
     name = scenario.stem
     count = len(loaded.radial_clearances) * len(loaded.thermal_models) * len(loaded.speeds)
     output.note(f"{loaded.title}: {count} film points")
@@ -274,7 +284,7 @@ def run(
         output.note("first run: the film kernels are compiled now, which can take a minute")
     path = table_path(scenario, folder)
     points, table = computed_table(output, loaded, path, workers, scheduler)
-    results = compute(loaded, points, table, output.note)
+    results = replace(compute(loaded, points, table, output.note), measured=seen)
     files, problems = write_results(results, folder, name, output.note)
     problems = [*results.problems, *problems]
     said = summary(results, {"coefficients": [path], **files}) | {"problems": problems}
@@ -282,7 +292,7 @@ def run(
     if not (output.json or output.quiet):
         from .tables import closing
 
-        output.show(*closing(said, results.curves))
+        output.show(*closing(said, results))
     code = _report_points(output, points)
     for problem in problems:
         output.complain(problem)
@@ -295,6 +305,17 @@ def _compiled_before() -> bool:
 
     folder = Path(__file__).parents[1] / "film" / "__pycache__"
     return bool(os.environ.get("NUMBA_CACHE_DIR")) or any(folder.glob("*.nbi"))
+
+
+def _measured(path: Path | None) -> tuple[Measured, ...]:
+    from ..study.measured import read_measured
+
+    return () if path is None else read_measured(path)
+
+
+def _not_of_machines(path: Path | None) -> None:
+    if path is not None:
+        raise InputError("goes with a bearing's scenario", key="--measured", value=path)
 
 
 def report(
@@ -316,6 +337,7 @@ def report(
     pdf: Annotated[
         bool, typer.Option("--pdf", help="Print it as PDF too (needs Chromium, Chrome or Edge).")
     ] = False,
+    measured: MeasuredOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:
@@ -339,16 +361,17 @@ def report(
             value=against,
         )  # fmt: skip
     if is_machine(scenario):
+        _not_of_machines(measured)
         return report_machine(output, scenario, page, workers, against, pdf)
     from ..files.scenario import load_scenario
     from ..show.report import write_report
     from ..show.report.pdf import write_pdf
     from ..study.main_job import compute
 
-    loaded = load_scenario(scenario)
+    loaded, seen = load_scenario(scenario), _measured(measured)
     table = table_path(scenario, Path())
     points, coefficients = computed_table(output, loaded, table, workers, scheduler)
-    results = compute(loaded, points, coefficients, output.note)
+    results = replace(compute(loaded, points, coefficients, output.note), measured=seen)
     other = None
     if against is not None:
         second = load_scenario(against)

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from ..bearing.operating_point import OperatingPoint
     from ..files.scenario import Scenario
+    from ..study.main_job import Results
     from ..study.stability import StabilityCurve
 
 
@@ -255,8 +256,11 @@ _LEAST_WALL_SHARE = 0.005
 """Of the heat through the walls, from which on it is said."""
 
 
-def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterator[RenderableType]:
+def closing(said: Mapping[str, Any], results: Results) -> Iterator[RenderableType]:
     """What was computed, what converged, headline results, where the files are."""
+    from ..study.measured import deviation_rows, deviations
+
+    curves = results.curves
     counts = ", ".join(f"{count} {status}" for status, count in said["counts"].items())
     points = f": {sum(said['counts'].values())} film points, {counts}"
     yield Text.assemble("\n", (said["title"], "bold"), points)
@@ -274,6 +278,9 @@ def closing(said: Mapping[str, Any], curves: Sequence[StabilityCurve]) -> Iterat
         lines = "\n".join(late_whirl(said["orbits"], curves))
         if lines:
             yield lines
+    if results.measured:
+        head, rows = deviation_rows(deviations(results.table, results.measured))
+        yield grid("Computed less measured", *head, rows=rows)
     if said.get("transient"):
         yield Text.assemble("\n", ("Thermal transient: ", "bold"), said["transient"]["verdict"])
     yield _files_table(said["files"])

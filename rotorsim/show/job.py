@@ -112,6 +112,8 @@ def figures(results: Results) -> Iterator[tuple[str, Figure]]:
         )
         micro = f"{clearance * _MICRO:.4g}um"
         yield f"stability_map_{micro}" if len(planes) > 1 else "stability_map", figure
+    if results.measured:
+        yield "measured", plots.measured_points(results.table, results.measured, title)
     if results.modes:
         yield "eigenvalues", plots.eigenvalue_plot(results.modes, title)
     if results.films:

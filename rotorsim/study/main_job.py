@@ -16,6 +16,7 @@ from ..errors import InputError, RotorsimError
 from ..model.orbit import OrbitForce, SpeedRamp
 from ..orbit.description import describe_orbit
 from . import orbits as orbit_steps
+from .measured import Measured, deviations, deviations_document
 from .orbits import FilmFrame, film_in_motion
 from .stability import Campbell, StabilityCurve, campbell_curves, stability_curves
 from .transient import Transient, simulate_transient
@@ -50,6 +51,7 @@ class Results:
     film_motion : Along orbits on the nonlinear film, ascending in time.
     modes : Of the scenario's rotor over speed in the orbit's clearance, for each thermal model.
     problems : What went wrong, where, and what to do.
+    measured : Points to draw over the curves.
     """
 
     scenario: Scenario
@@ -63,6 +65,7 @@ class Results:
     modes: tuple[Campbell, ...] = ()
     transient: Transient | None = None
     problems: tuple[str, ...] = ()
+    measured: tuple[Measured, ...] = ()
 
     @property
     def rotor_mass(self) -> float | None:
@@ -284,6 +287,7 @@ def summary(results: Results, files: dict[str, Any]) -> dict[str, Any]:
         "rotor_mass": mass,
         "heating": _heating_effect(results.points, results.curves),
         "orbits": rows,
+        "measured": deviations_document(deviations(results.table, results.measured)),
         "transient": None if results.transient is None else results.transient.describe(),
         "files": files,
         "problems": list(results.problems),

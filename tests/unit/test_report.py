@@ -24,6 +24,7 @@ from rotorsim.show.report.compare import machine_comparison
 from rotorsim.show.report.results import _log_decrement
 from rotorsim.status import SolveStatus
 from rotorsim.study.main_job import Results
+from rotorsim.study.measured import read_measured
 from rotorsim.study.stability import stability_curves
 from rotorsim.study.sweep import as_table, sweep_points
 
@@ -283,3 +284,13 @@ def test_two_machines_beside_each_other():
     assert '+outer_diameter = "350 mm"' in changed
     same = Checker(f"<div>{machine_comparison(mine, mine)}</div>").words
     assert "The files are the same." in same
+
+
+def test_measured_points_have_their_section(results, tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text("speed [rpm],load [kN]\n9000,20\n")
+    page = report_page(replace(results, measured=read_measured(path)))
+    words = Checker(page).words
+    assert "Measured and computed" in words
+    assert "Measured points and the computed curves." in words
+    assert "Computed less measured" in words

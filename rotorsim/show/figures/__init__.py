@@ -4,7 +4,13 @@ Matplotlib is imported with this package: import it where a figure is drawn. `sa
 PNG and SVG.
 """
 
-from .bearing import coefficients_over_speed, film_maps, film_profiles, thresholds_over_speed
+from .bearing import (
+    coefficients_over_speed,
+    film_maps,
+    film_profiles,
+    measured_points,
+    thresholds_over_speed,
+)
 from .machine import (
     bode_at_probes,
     critical_speed_chart,
@@ -43,6 +49,7 @@ __all__ = [
     "film_profiles",
     "growth_over_speed",
     "machine_campbell",
+    "measured_points",
     "mode_shape",
     "mode_shapes",
     "orbit_plot",

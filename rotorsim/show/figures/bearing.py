@@ -19,6 +19,7 @@ from ...bearing.operating_point import FilmFields, OperatingPoint
 from ...bearing.table import CoefficientTable
 from ...errors import InputError
 from ...rows import QUANTITIES, RPM, ZERO_CELSIUS, axis_title, in_shown_unit, number, shown_unit
+from ...study.measured import Measured, curves, shown_as
 from ...study.stability import StabilityCurve
 from ...text import caption
 from .style import MARKERS, MEGA, axes_or_new, figure_of, model_label, model_style, new_axes
@@ -45,6 +46,30 @@ def coefficients_over_speed(table: CoefficientTable, title: str = "") -> Figure:
                 ax.plot(table.speeds * RPM, values[index][:, i, j], **look)
     for ax in axes[1]:
         ax.set_xlabel(QUANTITIES["speed"].axis)
+    _legend_below(figure, axes[0, 0])
+    return figure
+
+
+def measured_points(
+    table: CoefficientTable, measured: Sequence[Measured], title: str = ""
+) -> Figure:
+    """Draw measured points over the computed curves, a panel for each result."""
+    columns = min(len(measured), 3)
+    rows = -(-len(measured) // columns)
+    figure, axes = new_axes(rows, columns, (3.9 * columns + 0.4, 3.0 * rows + 0.9), title)
+    clearances = table.dataset["radial_clearance"].values.astype(float)
+    for ax, one in zip(axes.flat, measured, strict=False):
+        kind = shown_as(one.name)
+        for model, clearance, values in curves(table, one.name):
+            look = _look(model, clearance, clearances, table.speeds.size)
+            ax.plot(table.speeds * RPM, kind.shown(values), **look)
+        ax.plot(
+            one.speed * RPM, kind.shown(one.value), "D", color="k", mfc="w", ms=5, zorder=5,
+            label="measured",
+        )  # fmt: skip
+        ax.set(xlabel=QUANTITIES["speed"].axis, ylabel=kind.axis)
+    for ax in list(axes.flat)[len(measured) :]:
+        ax.set_visible(False)
     _legend_below(figure, axes[0, 0])
     return figure
 

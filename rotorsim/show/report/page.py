@@ -31,10 +31,12 @@ _CAPTIONS = {
     "film_profiles": "Pressure and temperature around the bearing at the highest speed.",
     "transient": "Thermal transient: temperatures, clearance, operation, stability over time.",
     "cascade": "Spectra of the journal's motion over shaft speed.",
+    "measured": "Measured points and the computed curves.",
     "orbits": "Journal orbits in the clearance circle; ○ start, ● end, + equilibrium.",
 }
 _PLACES = {
-    "film": "static", "film_profiles": "static", "coefficients": "coefficients",
+    "measured": "measured", "film": "static", "film_profiles": "static",
+    "coefficients": "coefficients",
     "cascade": "orbits", "orbits": "orbits",
 }  # fmt: skip
 _FLOWS = {
@@ -108,6 +110,7 @@ def _parts(
         *figures.pop("stability"),
     )
     yield html.section("Static results", results.top_points(found.points), *figures.pop("static"))
+    yield html.section("Measured and computed", results.measured(found), *figures.pop("measured"))
     yield html.section("Stiffness and damping", *figures.pop("coefficients"))
     yield html.section("Orbits", results.orbits(found.orbits), *figures.pop("orbits"))
     yield html.section("Conventions and limits", _conventions(found))
@@ -219,7 +222,7 @@ def _figures(found: Results) -> dict[str, list[str]]:
     from ..job import figures
 
     placed: dict[str, list[str]] = {
-        name: [] for name in ("stability", "static", "coefficients", "orbits")
+        name: [] for name in ("stability", "static", "measured", "coefficients", "orbits")
     }
     for name, drawn in figures(found):
         known = max((key for key in _CAPTIONS if name.startswith(key)), key=len, default=name)

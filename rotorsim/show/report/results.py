@@ -16,11 +16,13 @@ from ...bearing.description import (
 )
 from ...orbit.description import ORBIT_HEADS, describe_orbit, orbit_texts
 from ...rows import QUANTITIES, RPM, number, table_html
+from ...study.measured import deviation_rows, deviations
 
 if TYPE_CHECKING:
     from ...bearing.operating_point import OperatingPoint
     from ...bearing.table import CoefficientTable
     from ...orbit import Orbit
+    from ...study.main_job import Results
     from ...study.stability import StabilityCurve
 
 _POINT = (
@@ -152,3 +154,9 @@ def orbits(several: Sequence[Orbit]) -> str:
 
 def _wide(table: str) -> str:
     return f'<div class="wide">{table}</div>'
+
+
+def measured(found: Results) -> str:
+    """Return what the computed curves are off from the measured points; nothing without."""
+    head, rows = deviation_rows(deviations(found.table, found.measured))
+    return _wide(table_html(head, rows, "Computed less measured", texts=2)) if rows else ""
