@@ -31,6 +31,8 @@ _CONVERGED = 1e-11
 """Relative residual of a Ritz value that counts as converged."""
 _SINGULAR = 1e14
 _NEWTON_STEPS = 30
+_FOLLOWED = 1e-12, 1e-8
+"""Relative step of inverse iteration at which an eigenvalue is known, or as well as it can be."""
 _SELF_ADJOINT = 1e-7
 """Relative residual below which a right eigenvector is the left one too."""
 
@@ -103,6 +105,43 @@ class MachineSpectrum:
         if found is None or not self.machine.frequency_dependent:
             return found
         return _at_their_frequencies(self.machine, speed, found)
+
+    def follow(
+        self, speed: float, value: complex, shape: ComplexArray
+    ) -> tuple[complex, ComplexArray] | None:
+        """Return eigenvalue and shape (m,) to which inverse iteration leads from a mode nearby.
+
+        None: a small machine, whose modes cost little, or no convergence.
+        """
+        if self.complete or self.machine.frequency_dependent or not self.machine.band_form.narrow:
+            return None
+        return _inverse_iteration(self.machine, speed, value, shape)
+
+
+def _inverse_iteration(
+    machine: Machine, speed: float, s: complex, x: ComplexArray
+) -> tuple[complex, ComplexArray] | None:
+    """Solve (s^2 M + s D + K) x = 0 from a guess (Ruhe 1973), at the cost of a few band solves."""
+    from ._band_kernels import times
+
+    form = machine.band_form
+    mass, damping, stiffness = machine.banded(speed)
+    last = np.inf
+    for _ in range(_NEWTON_STEPS):
+        ordered = np.empty((x.size, 1), dtype=complex)
+        ordered[form.place, 0] = x
+        rate = times(damping, ordered, False) + 2.0 * s * times(mass, ordered, False)
+        band: NDArray[Any] = stiffness + s * damping + s * s * mass
+        y = form.solve(band, rate[form.place, 0])
+        along = np.vdot(x, y)
+        if not (np.isfinite(along) and abs(along) > 0.0):
+            return None
+        step = np.vdot(x, x) / along
+        s, x = complex(s - step), np.asarray(y / np.linalg.norm(y), dtype=complex)
+        if abs(step) <= _FOLLOWED[0] * abs(s) or last <= abs(step) <= _FOLLOWED[1] * abs(s):
+            return s, x
+        last = abs(step)
+    return None
 
 
 def _every_mode(mass: Array, damping: Array, stiffness: Array) -> Eigenmodes | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -15,8 +15,14 @@ from ..threads import on_one_blas_thread
 from .branches import Modes
 from .machine import Machine
 from .modes import machine_spectrum, modes
-from .spectrum import Eigenmodes, Spectrum
+from .spectrum import Eigenmodes, MachineSpectrum, Spectrum
 
+_SAME_MODE, _SAME_VALUE = 0.9, 0.3
+"""Likeness of shape, and relative distance of the eigenvalue, by which a mode is itself."""
+_OTHER_MODE = 0.1
+"""Likeness of shapes below which an abrupt step leads from one mode to another."""
+_MEETS = 1e-6
+"""Of the speed: by how much a frequency may miss it at a critical speed."""
 CRITICAL_DAMPING = 0.5**0.5
 """Damping ratio from which an unbalance response has no peak: no critical speed."""
 
@@ -159,6 +165,8 @@ def _crossings(machine: Machine, found: Modes, order: float) -> tuple[CriticalSp
         if offset[i + 1, k] == 0.0 and i + 2 < offset.shape[0]:
             continue  # counted as the beginning of the next interval
         crossing = _refined_crossing(at, branches, int(i), int(k), order)
+        if crossing is None:
+            continue
         if 0.0 <= crossing.damping_ratio[0, 0] < CRITICAL_DAMPING or crossing.growth_rate[0, 0] > 0:
             one = replace(crossing, planes=machine.rotor.planes)
             speed, ratio = float(one.parameter[0]), float(one.damping_ratio[0, 0])
@@ -166,26 +174,60 @@ def _crossings(machine: Machine, found: Modes, order: float) -> tuple[CriticalSp
     return tuple(sorted(result, key=lambda one: one.speed))
 
 
-def _refined_crossing(at: Spectrum, branches: Modes, i: int, k: int, order: float) -> Modes:
-    """Return the mode at the speed between points i and i + 1 where branch k crosses."""
+def _refined_crossing(
+    at: MachineSpectrum, branches: Modes, i: int, k: int, order: float
+) -> Modes | None:
+    """Return the mode at the speed between points i and i + 1 where branch k crosses.
+
+    None: it does not, but jumps from one mode to another. The one mode is followed; all of them are
+    asked for at the end, and where it is lost.
+    """
     from scipy.optimize import brentq
 
     low, high = (float(s) for s in branches.parameter[i : i + 2])
     ends = branches.eigenvalues[[i, i + 1], k], branches.shapes[[i, i + 1], k]
+    if not branches.smooth[i + 1] and abs(np.vdot(*ends[1])) ** 2 < _OTHER_MODE:
+        return None
+
+    def guess(speed: float) -> tuple[complex, Any]:
+        """Return eigenvalue and shares of both ends' shapes, straight between the ends."""
+        t = (speed - low) / (high - low)
+        return ends[0][0] + t * (ends[0][1] - ends[0][0]), np.array([1.0 - t, t])
 
     def mode(speed: float) -> Eigenmodes:
-        """Return the that mode between the two points: nearest in eigenvalue and shape."""
-        t = (speed - low) / (high - low)
+        """Return that mode between the two points: nearest in eigenvalue and shape."""
         state = at(speed)
         assert state is not None  # between two speeds at which it is known
-        value = ends[0][0] + t * (ends[0][1] - ends[0][0])
-        mac = np.abs(state.shapes.conj() @ ends[1].T) ** 2 @ np.array([1.0 - t, t])
+        value, shares = guess(speed)
+        mac = np.abs(state.shapes.conj() @ ends[1].T) ** 2 @ shares
         cost = np.abs(state.values - value) / abs(value) + 1.0 - mac
         return state.taken(np.array([cost.argmin()]))
 
+    def followed(speed: float) -> float:
+        value, shares = guess(speed)
+        found = at.follow(speed, value, ends[1][int(shares.argmax())])
+        if found is not None:
+            mac = np.abs(ends[1].conj() @ found[1]) ** 2 @ shares
+            if mac > _SAME_MODE and abs(found[0] - value) < _SAME_VALUE * abs(value):
+                return float(abs(found[0].imag))
+        return every(speed)
+
+    def every(speed: float) -> float:
+        return float(abs(mode(speed).values[0].imag))
+
+    def offset(frequency: Callable[[float], float]) -> Callable[[float], float]:
+        return lambda speed: frequency(speed) - order * speed
+
     tolerance: dict[str, Any] = {"xtol": 1e-12 * high, "rtol": 1e-12}
-    root: Any = brentq(lambda s: abs(mode(s).values[0].imag) - order * s, low, high, **tolerance)
-    one = mode(float(root))
+    for frequency in (followed, every):
+        if offset(frequency)(low) * offset(frequency)(high) > 0.0:
+            continue
+        root: Any = brentq(offset(frequency), low, high, **tolerance)
+        one = mode(float(root))
+        if abs(abs(one.values[0].imag) - order * root) < _MEETS * high:
+            break
+    else:  # two modes stand under one name: neither of them meets the speed here
+        return None
     return Modes(
         np.array([float(root)]), one.values[None], one.accuracy[None], one.shapes[None],
         np.array([True]),

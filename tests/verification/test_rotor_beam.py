@@ -268,3 +268,17 @@ def test_a_shaft_between_pins_buckles_at_eulers_load():
     # a pin in the middle: two bays
     assert buckling_load(beam, (0.0, 0.5 * LENGTH, LENGTH)) == pytest.approx(4 * euler, rel=1e-5)
     assert buckling_load(beam, (0.0,)) == np.inf
+
+
+@pytest.mark.slow
+def test_critical_speeds_of_a_long_shaft_are_frequencies_at_their_speeds():
+    """Far above its lowest modes, which then are not among those that are followed."""
+    beam = Beam((Section(10.0, 0.064, elements=24),), (Disc(5.0, 40.0, 0.4, 0.25),), STEEL)
+    machine = machine_of(beam, ConstantSupport(2e7, 2e4))
+    found = critical_speeds(machine, modes(machine, np.linspace(100.0, 8000.0, 12)))
+    assert len(found) > 20
+    for one in found:
+        frequencies = np.abs(np.linalg.eigvals(machine.state_matrix(one.speed)).imag)
+        assert np.abs(frequencies - one.speed).min() < 1e-6 * one.speed
+    forward = [one.speed for one in found if one.whirl == "forward"]
+    assert np.diff(forward).min() > 1e-3
