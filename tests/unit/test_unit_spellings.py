@@ -146,6 +146,7 @@ def test_spelling_of_another_kind_is_refused_with_a_valid_one(
         refusal = str(error)
     both = (
         {"mass", "force"},
+        {"unbalance", "torque"},  # a pound is a mass in the one, a force in the other
         {"mass", "acceleration"},
         {"temperature", "temperature difference"},
         {"pressure", "modulus"},
