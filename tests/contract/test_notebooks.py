@@ -17,7 +17,7 @@ def said(book) -> list[str]:
     """Return the texts that a notebook's cells print."""
     cells = (cell for cell in book.cells if cell.cell_type == "code")
     return [
-        "".join(one["text"] for one in cell.outputs if one.output_type == "stream")
+        "".join(one["text"] for one in cell.outputs if one.get("name") == "stdout")
         for cell in cells
     ]
 
