@@ -40,11 +40,14 @@ class Transient:
     steps : Moments, ascending in time; two at a jump.
     rotor_mass : Per bearing, for the growth rates [kg]; None without a rotor.
     duration : Asked for [s]; the last moment lies before it where the film ended.
+    drained_in : Time in which the gap would run dry after a loss of the supply if nothing came back
+        [s]; None: the supply lasts.
     """
 
     steps: tuple[TransientStep, ...]
     rotor_mass: float | None
     duration: float
+    drained_in: float | None = None
 
     @cached_property
     def time(self) -> Array:
@@ -129,6 +132,7 @@ class Transient:
                 "message": last.message,
                 "duration": self.duration,
                 "rotor_mass": self.rotor_mass,
+                "drained_in": self.drained_in,
                 "verdict": self.verdict(),
                 "moments": moments,
                 **columns,
@@ -136,7 +140,15 @@ class Transient:
         )
 
     def verdict(self) -> str:
-        """Say in a sentence how the transient goes."""
+        """Say how the transient goes."""
+        if self.drained_in is None:
+            return self._course()
+        return (
+            f"{self._course()} Without supply the oil is taken to come back uncooled; if none came "
+            f"back, the gap would run dry in about {self.drained_in:.2g} s."
+        )
+
+    def _course(self) -> str:
         if not self.converged:
             point = self.points[-1]
             reached = np.nanmax(self.values("max_temperature")) if len(self.steps) > 1 else math.nan
@@ -227,7 +239,20 @@ def simulate_transient(
         if progress is not None:
             progress(step)
     mass = None if scenario.rotor is None else scenario.rotor.total_mass
-    return Transient(tuple(steps), mass, settings.duration)
+    lost = next((event.at for event in settings.events if event.supply is False), None)
+    drained = None if lost is None else _drained_in(steps, case.bearing, lost)
+    return Transient(tuple(steps), mass, settings.duration, drained)
+
+
+def _drained_in(steps: list[TransientStep], bearing: Bearing, lost: float) -> float | None:
+    """Return the volume of the gap over the side flow at the loss of the supply [s]."""
+    at_jump = [step.point for step in steps if step.time == lost and step.point.converged]
+    if not at_jump or not at_jump[-1].side_flow > 0.0:
+        return None
+    after = at_jump[-1]
+    covered = sum(pad.arc for pad in bearing.pads) if bearing.pads else 2.0 * math.pi
+    gap = covered * bearing.journal_radius * bearing.length * after.running_clearance
+    return float(gap / after.side_flow)
 
 
 def conditions_of(

@@ -190,7 +190,11 @@ def test_events_of_a_scenario():
     said = found.describe()
     worst = said["moments"]["least_film"]
     assert worst["min_film_thickness"] == pytest.approx(found.values("min_film_thickness").min())
-    assert said["verdict"]
+    lost = found.points[int(np.flatnonzero(at == 40.0)[-1])]
+    bearing = rs.Scenario.from_text(TEXT).bearing
+    gap = 2.0 * np.pi * bearing.journal_radius * bearing.length * lost.running_clearance
+    assert said["drained_in"] == pytest.approx(gap / lost.side_flow, rel=0.02)
+    assert "run dry" in said["verdict"]
 
 
 def test_what_a_transient_refuses():
