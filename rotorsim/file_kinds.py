@@ -48,8 +48,7 @@ _SENTENCES = {
     FileKind.CSV: "is a CSV file (.csv); " + _TAKES_TABLES + " coefficients in CSV",
     FileKind.ROSS: "is a bearing that ROSS saved; " + _TAKES_TABLES + " it",
     FileKind.COLUMNS: (
-        "is plain text (.txt), which is written for other programs and not read; give the table "
-        "itself (.nc), or columns of coefficients as .csv"
+        "is plain text (.txt) without columns of coefficients; " + _TAKES_TABLES + " such columns"
     ),
     FileKind.RECORDING: "is a recording (.rrd); `rotorsim view` takes it",
     FileKind.NUMPY: (
@@ -106,6 +105,9 @@ KNOWN_SUFFIXES = frozenset(_BY_SUFFIX)
 _SCENARIO_TABLE = re.compile(
     rb"^[ \t]*\[+(bearing|lubricant|operating)\b|^[ \t]*(bearing|lubricant|operating)\.", re.M
 )
+_BETWEEN_NAMES = re.compile(rb'[\s,;|"#()\[\]]+')
+_TITLE_LINES = 50
+"""Lines of a sheet that may stand before its header."""
 _COEFFICIENT = re.compile(rb"^[ \t]*kxx[ \t]*=", re.M)
 
 
@@ -203,12 +205,9 @@ def recognise(head: bytes, suffix: str = "") -> FileKind | None:
 
 
 def _is_csv_of_coefficients(text: bytes) -> bool:
-    """Return whether the first line that is no comment names the columns of a coefficient table."""
-    for line in text.splitlines():
-        if line.strip() and not line.lstrip().startswith(b"#"):
-            lower = line.lower()
-            return b"kxx" in lower and b"cxx" in lower and (b"," in lower or b";" in lower)
-    return False
+    """Return whether one of the first lines names the columns of a coefficient table."""
+    lines = text.lower().replace(b"_", b"").splitlines()[:_TITLE_LINES]
+    return any({b"kxx", b"cxx"} <= set(_BETWEEN_NAMES.split(line)) for line in lines)
 
 
 SUFFIXES = {

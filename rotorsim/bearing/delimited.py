@@ -8,7 +8,8 @@ Lines beginning with ``#`` are comments. Optional columns: ``thermal_model``, ``
 ``load``, ``status``; columns of another name are left out. Speeds ascend within each thermal model
 and clearance, which all have the same ones; without a column of speeds the coefficients are
 constant. A row whose status is not ``converged`` may hold ``nan``. Columns are separated by commas,
-or by semicolons, tabs or bars, and then the decimals may be written with a comma.
+or by semicolons, tabs or bars, and then the decimals may be written with a comma. Columns in plain
+text, separated by blanks, may have their header and units in comments.
 """
 
 from __future__ import annotations
@@ -168,6 +169,8 @@ def _lines(
     if stated:  # a line for spreadsheet programs
         lines[0] = ""
     separator = stated[1] if stated else _separator(lines, header or _is_header)
+    if not separator:
+        lines, separator = _from_blanks(lines, header or _is_header), ","
     try:
         found = [
             (number, [cell.strip() for cell in cells])
@@ -182,14 +185,28 @@ def _lines(
 def _separator(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> str:
     """Return separator of the first line that it cuts into the columns of a table.
 
-    Else the comma.
+    Empty where only blanks do, else the comma.
     """
     for line in lines[:_TITLE_LINES]:
         if line.strip() and not line.lstrip().startswith("#"):
             for separator in _SEPARATORS:
                 if header(line.split(separator)):
                     return separator
-    return ","
+    blanks = any(header(line.lstrip("# ").split()) for line in lines[:_TITLE_LINES])
+    return "" if blanks else ","
+
+
+def _from_blanks(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> list[str]:
+    """Put commas between columns of blanks, from the header on.
+
+    Header and units may stand in comments.
+    """
+    place = next(k for k, line in enumerate(lines) if header(line.lstrip("# ").split()))
+    above = [""] * place
+    return above + [
+        ",".join((line.lstrip("# ") if k < 2 else line).split())
+        for k, line in enumerate(lines[place:])
+    ]
 
 
 def _is_header(cells: Sequence[str]) -> bool:

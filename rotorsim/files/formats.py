@@ -53,11 +53,12 @@ FORMATS = {
     "nc": "nc",
 }
 """Names of the formats, and how their files end."""
-_SUFFIXES = (".nc", ".csv", ".json")
-_LOAD_FRAME_SUFFIXES = (".nc", ".csv")
+_LOAD_FRAME_SUFFIXES = (".nc", ".csv", ".txt")
+_SUFFIXES = (*_LOAD_FRAME_SUFFIXES, ".json")
 _KINDS = {
     ".nc": (FileKind.NETCDF,),
     ".csv": (FileKind.CSV,),
+    ".txt": (FileKind.CSV,),
     ".toml": (FileKind.ROSS,),
     ".json": (FileKind.ROSS, FileKind.JSON),
 }
@@ -120,7 +121,7 @@ def is_table(path: str | Path) -> bool:
 def read_table(
     path: str | Path, *, load_direction: float | None = None, bearing: str | None = None
 ) -> CoefficientTable:
-    """Read a table from netCDF (``.nc``), CSV (``.csv``) or a bearing saved by ROSS.
+    """Read a table from netCDF (``.nc``), CSV (``.csv``, ``.txt``) or a bearing saved by ROSS.
 
     path : str or Path
     load_direction : For a bearing saved by ROSS: where the static load points in its frame [rad],
@@ -144,12 +145,12 @@ def read_table(
         raise TableError(message, source=source, key="--bearing", value=bearing)
     if suffix == ".nc":
         return CoefficientTable.load(source)
-    if suffix == ".csv":
+    if suffix in (".csv", ".txt"):
         return CoefficientTable.from_csv(source)
     if suffix in (".toml", ".json"):
         return ross.read(source, load_direction, bearing)
     raise TableError(
-        "a table's name ends in .nc (netCDF), .csv, or .toml or .json (ROSS)", source=source
+        "a table's name ends in .nc (netCDF), .csv, .txt, or .toml or .json (ROSS)", source=source
     )
 
 

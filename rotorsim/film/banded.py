@@ -59,6 +59,8 @@ class _FilmFactor:
 def factor_operator(operator: FilmOperator, active: Booleans) -> _FilmFactor:
     """Factor the conductance matrix restricted to the `active` cells."""
     order, folded = column_order(operator.interior, active)
+    if not order.size:
+        raise SingularFilmError("no film is left to solve")
     n, m = active.shape
     width = (2 * m if folded else m) if order.size > 1 else m - 1
     width = min(width, order.size * m - 1)

@@ -47,6 +47,14 @@ class PadFrame:
         """Return the tilt [rad] at which E_t = 0."""
         return float(q[self.unknowns.tilt] - self.eccentricity(q)[1] / self.arm)
 
+    def least_across(self, along: float) -> float:
+        """Return the E_t [m] above which an isothermal pad with E_n = `along` > 0 has its root.
+
+        The film of a pivot ahead of the middle may reach so far behind its thinnest place that the
+        root lies at E_t < 0: then where the whole film would diverge.
+        """
+        return 0.0 if self.pad.offset >= 0.5 else -along * math.tan(self._half_beyond(along))
+
     def tilt_limits(self, thickness: Array, q: Array) -> tuple[float, float]:
         """Return the tilts [rad] at which leading and trailing edge would touch the journal at `q`.
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..arrays import Array
-from ..model import Case, EccentricityTarget
+from ..model import Case, EccentricityTarget, LoadTarget
 from ..status import SolveStatus
 from .anderson import AndersonMixer
 from .banded import NoFilmError, SingularFilmError
@@ -20,9 +21,11 @@ from .solution import FilmSolution, WallsOf, WarmStart
 from .thd import ThermalFilm, packed, solve_thermal_film, uniform_heat, unpacked
 from .walls import choose_walls
 
-_FORCE_TOLERANCE = 1e-10
+_FORCE_TOLERANCE = 1e-9
 """Of isothermal films: cross terms that vanish by symmetry are to vanish."""
 _THERMAL_FORCE_TOLERANCE = 1e-7
+_ROUGHLY = 1e-3
+"""Of the film on a coarser mesh, where the next one begins."""
 _MAX_STEPS = 80
 _MAX_REVISIONS = 6
 """Times that the set of unloaded pads may be revised."""
@@ -32,6 +35,10 @@ _MAX_TURNS = 40
 """Times that position and temperatures are found in turn."""
 _IN_TURN_TOLERANCE = 1e-5
 """Of the forces, relative to the load."""
+_CLIMB = (0.1, 0.2, 0.4, 0.6, 0.8)
+"""Parts of the load from which a film is approached that is not found at once."""
+_LEAST_CELLS = 8
+"""Cells along each pad of a mesh on which the equilibrium is found first."""
 _MAX_RETRIES = 2
 """Times that a thermal film is solved which does not converge."""
 
@@ -44,10 +51,11 @@ class _Cold:
     off: float
     steps: int
     unreachable: bool
+    tolerance: float = _FORCE_TOLERANCE
 
     @property
     def converged(self) -> bool:
-        return self.off < _FORCE_TOLERANCE and self.state.solution.converged
+        return self.off < self.tolerance and self.state.solution.converged
 
 
 def solve_pads(
@@ -64,6 +72,25 @@ def solve_pads(
     Raises NoFilmError: No pads stand in the load's way, or at the given eccentricity the journal
         touches one wherever it stands.
     """
+    found = _solve(case, speed, initial, walls)
+    if found.status is not SolveStatus.NOT_CONVERGED or not isinstance(case.target, LoadTarget):
+        return found
+    if PadSearch(found.problem, case.target).give_way(found.state.displacement):
+        return found
+    near = None
+    for part in _CLIMB:
+        lighter = replace(case, target=LoadTarget(part * case.target.load))
+        solution = _solve(lighter, speed, near, walls)
+        if solution.status is SolveStatus.CONVERGED:
+            near = solution.warm_start
+    if near is None:
+        return found
+    climbed = _solve(case, speed, near, walls)
+    return climbed if climbed.status is SolveStatus.CONVERGED else found
+
+
+def _solve(case: Case, speed: float, initial: WarmStart | None, walls: WallsOf) -> FilmSolution:
+    """Solve from a first guess; see `solve_pads`."""
     problem = film_problem(case, speed, case.bearing, (0.0, 0.0))
     search = PadSearch(problem, case.target)
     if not search.supports_load:
@@ -78,9 +105,14 @@ def solve_pads(
     if problem.is_thermal and heat is not None and heat.temperature.shape == _heat_shape(problem):
         thermal = _thermal(search, search.settle(q, _warm_layers(problem, heat)), heat, walls)
         return _conclude(search, thermal.state, thermal, None)
-    supply = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    layers = isoviscous_layers(problem.mesh.shape, supply)
-    cold = _isothermal(search, q, layers)
+    layers = _supply_layers(problem)
+    nearby, cold = _on_coarser_mesh(case, speed) if initial is None else None, None
+    if nearby is not None:
+        with suppress(NoFilmError, SingularFilmError):
+            cold = _isothermal(search, search.as_found(*nearby), layers, settled=True)
+    if cold is None or not cold.converged:
+        search = PadSearch(problem, case.target)
+        cold = _isothermal(search, q, layers)
     if isinstance(case.target, EccentricityTarget) and not cold.converged:
         cold = _by_attitude(search, layers) or replace(cold, unreachable=True)
     if not problem.is_thermal or not cold.converged:
@@ -89,6 +121,31 @@ def solve_pads(
     if not (thermal.converged or thermal.out_of_range):
         return _in_turn(search, thermal, cold, walls)
     return _conclude(search, thermal.state, thermal, cold)
+
+
+def _on_coarser_mesh(case: Case, speed: float) -> tuple[Array, frozenset[int]] | None:
+    """Return displacements and unloaded pads of the isothermal film on a mesh half as fine.
+
+    None where the mesh is coarse already, or that film does not converge.
+    """
+    mesh = case.film.mesh
+    coarser = replace(mesh, circumferential=mesh.circumferential // 2, axial=2 * (mesh.axial // 4))
+    if coarser.circumferential < _LEAST_CELLS * len(case.bearing.pads) or coarser.axial < 4:
+        return None
+    case = replace(case, film=replace(case.film, mesh=coarser))
+    try:
+        problem = film_problem(case, speed, case.bearing, (0.0, 0.0))
+        search = PadSearch(problem, case.target)
+        layers = _supply_layers(problem)
+        cold = _isothermal(search, search.first_guess(), layers, tolerance=_ROUGHLY)
+    except (NoFilmError, SingularFilmError):
+        return None
+    return (cold.state.displacement, search.unloaded) if cold.converged else None
+
+
+def _supply_layers(problem: FilmProblem) -> LayerIntegrals:
+    viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
+    return isoviscous_layers(problem.mesh.shape, viscosity)
 
 
 def _in_turn(
@@ -127,8 +184,16 @@ def _warm_layers(problem: FilmProblem, heat: Heat) -> LayerIntegrals:
     return layer_integrals(problem.lubricant.law.viscosity(heat.temperature))
 
 
-def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
-    q = search.settle(q, layers)
+def _isothermal(
+    search: PadSearch,
+    q: Array,
+    layers: LayerIntegrals,
+    *,
+    settled: bool = False,
+    tolerance: float = _FORCE_TOLERANCE,
+) -> _Cold:
+    """Find the equilibrium from `q`; `settled`: with the pads as they stand there."""
+    q = q if settled else search.settle(q, layers)
     full, best, stalled, revisions = None, np.inf, 0, 0
     step = 0
     while True:
@@ -146,13 +211,13 @@ def _isothermal(search: PadSearch, q: Array, layers: LayerIntegrals) -> _Cold:
             revisions += 1
             q, full, best = search.settle(q, layers), None, np.inf
             continue
-        if off < _FORCE_TOLERANCE:
-            settled = search.revived(q, layers)
-            if settled is not None:
-                q, full, best = settled, None, np.inf
+        if off < tolerance:
+            revived = search.revived(q, layers)
+            if revived is not None:
+                q, full, best = revived, None, np.inf
                 continue
-        if off < _FORCE_TOLERANCE or search.unreachable or step >= _MAX_STEPS:
-            return _Cold(state, off, step, search.unreachable)
+        if off < tolerance or search.unreachable or step >= _MAX_STEPS:
+            return _Cold(state, off, step, search.unreachable, tolerance)
         stalled = 0 if off < 0.8 * best else stalled + 1
         best = min(best, off)
         if stalled >= 4:
@@ -164,17 +229,21 @@ def _by_attitude(search: PadSearch, layers: LayerIntegrals) -> _Cold | None:
     """Look all round for the attitude at which the force opposes the load; None without one."""
     from scipy.optimize import brentq
 
-    search.held = True
-
-    def misfit(angle: float) -> float:
+    def held_at(angle: float) -> _Cold | None:
         q = search.at(angle)
         if q is None:
-            return math.nan
+            return None
+        # A search remembers which pads came and went: each attitude begins without.
+        held = PadSearch(search.whole, search.target)
+        held.held = True
         try:
-            force = _isothermal(search, q, layers).state.force
+            return _isothermal(held, q, layers)
         except (NoFilmError, SingularFilmError):
-            return math.nan
-        return math.atan2(-force[1], -force[0])
+            return None
+
+    def misfit(angle: float) -> float:
+        held = held_at(angle)
+        return math.nan if held is None else math.atan2(-held.state.force[1], -held.state.force[0])
 
     angles = np.linspace(-math.pi, math.pi, _ATTITUDES + 1)
     values = [misfit(float(angle)) for angle in angles]
@@ -182,18 +251,13 @@ def _by_attitude(search: PadSearch, layers: LayerIntegrals) -> _Cold | None:
         low, high = values[k], values[k + 1]
         if not (low * high <= 0.0 and abs(low - high) < math.pi):
             continue
-        search.held = True
         bracket = float(angles[k]), float(angles[k + 1])
-        angle = float(brentq(misfit, *bracket, xtol=1e-4))  # type: ignore[arg-type]
-        q = search.at(angle)
-        if q is None:
+        held = held_at(float(brentq(misfit, *bracket, xtol=1e-4)))  # type: ignore[arg-type]
+        if held is None:
             continue
-        held = _isothermal(search, q, layers)
-        search.held = False
         found = _isothermal(search, held.state.displacement, layers)
         if found.converged:
             return found
-    search.held = False
     return None
 
 
@@ -233,7 +297,8 @@ def _conclude(
         converged, residual, cause = thermal.converged, thermal.residual, thermal.cause
         iterations += thermal.iterations
     status, message = SolveStatus.CONVERGED, ""
-    if len(search.unloaded) == len(search.frames):
+    unloaded = search.unloaded | search.without_film(state)
+    if len(search.unloaded if converged else unloaded) == len(search.frames):
         status = SolveStatus.NO_EQUILIBRIUM
         message = "no pad's film can be balanced at positive pressure: all pads are unloaded"
     elif thermal is not None and thermal.out_of_range:
@@ -271,5 +336,5 @@ def _conclude(
         message=message,
         iterations=iterations,
         residual=residual,
-        unloaded=search.unloaded | search.without_film(state),
+        unloaded=unloaded,
     )

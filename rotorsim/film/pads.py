@@ -8,8 +8,9 @@ Seen from its pivot, a pad is an arc of a plain bore around a journal at the ecc
 theta_p). Its tilt is free, so E_t settles where the film's moment about the pivot vanishes. A pad
 tilted so far back that its film diverges everywhere carries nothing and fulfils that trivially; the
 root that carries load lies above it, and there the moment falls with the tilt. With E_n > 0 it is
-bracketed: at E_t = 0 all pressure lies ahead of the pivot, where the trailing edge touches, behind
-it. With E_n <= 0 only a pivot behind the middle has one, if any; a pad without one is unloaded.
+bracketed: at E_t = 0 most pressure lies ahead of the pivot, where the trailing edge touches, behind
+it (see `PadFrame.least_across` for a pivot ahead of the middle). With E_n <= 0 only a pivot behind
+the middle has one, if any; a pad without one is unloaded.
 
 The load of each pad is then a rising function of E_n alone, so that Newton's method for the
 journal, kept off the pads, finds the one equilibrium; journal, tilts, pivots and pitches move
@@ -47,6 +48,9 @@ _THINNEST = 1e-4
 """Film thickness relative to the clearance at which the search gives up."""
 _LEAST_ECCENTRICITY = 1e-8
 """E_n relative to the clearance above which a pad carries load wherever its pivot stands."""
+_THERMAL_WEDGE = 0.15
+"""Of E_t, relative to the clearance, below the least of an isothermal pad, where a root of a heated
+one is looked for."""
 _SLACK = 0.05
 """Stiffness of the journal over load per clearance, added while the forces are far off."""
 _SETTLED = 0.005
@@ -76,6 +80,8 @@ class PadSearch:
         """How often each pad has been unloaded before; from zero its load rises infinitely steep.
         """
         self._revived: frozenset[int] = frozenset()
+        self._lost: frozenset[int] = frozenset()
+        """Pads that are taken as loaded and have no film."""
 
     @cached_property
     def frames(self) -> tuple[PadFrame, ...]:
@@ -223,9 +229,9 @@ class PadSearch:
         q, weights = state.displacement, self._weights
         missing = self.missing(state) * weights
         stiffness = self.stiffness(state) * weights[:, None] * weights[None, :]
+        self._lost = self.without_film(state) - self.unloaded
         for number, frame in enumerate(self.frames):
-            if number not in self.unloaded and not self._carries(state, frame):
-                # It has lost its film: leave it to `allowed` to bring it back.
+            if number in self._lost:  # leave it to `allowed` to bring it back
                 for place in frame.unknowns.places:
                     stiffness[place, :] = stiffness[:, place] = 0.0
                     stiffness[place, place] = 1.0
@@ -299,7 +305,7 @@ class PadSearch:
         ]
         result = old
         while scale > 1e-6:
-            result = self._above_trivial(old, old + scale * step, loaded)
+            result = self._above_trivial(old, old + scale * step)
             h = geometry.thickness(result)
             if all(
                 float(h[:, frame.columns].min()) >= floor
@@ -314,19 +320,32 @@ class PadSearch:
             result[:2] *= size / float(np.hypot(result[0], result[1]))
         return result
 
-    def _above_trivial(self, old: Array, new: Array, loaded: list[PadFrame]) -> Array:
-        """Keep E_t near, and of every pad with E_n > 0 above zero, where its film carries."""
+    def _above_trivial(self, old: Array, new: Array) -> Array:
+        """Keep E_t near, and of every pad with E_n > 0 where its film carries.
+
+        Oil that thins on its way makes pressure in a film that diverges, too: a heated pad with its
+        pivot ahead of the middle is brought back only where it has lost its film.
+        """
         new = new.copy()
-        for frame in loaded:
+        for number, frame in enumerate(self.frames):
+            if number in self.unloaded:
+                continue
             along, across = frame.eccentricity(new)
             turned = across - frame.eccentricity(old)[1]
             if abs(turned) > _LARGEST_STEP * frame.clearance:
                 excess = turned - math.copysign(_LARGEST_STEP * frame.clearance, turned)
                 new[frame.unknowns.tilt] -= excess / frame.arm
                 across -= excess
-            if along > 0.0 and across <= 0.0 and not self._skewed:
-                kept = max(0.3 * frame.eccentricity(old)[1], 0.02 * along)
-                new[frame.unknowns.tilt] += (kept - across) / frame.arm
+            if along <= 0.0 or self._skewed:
+                continue
+            least, before = frame.least_across(along), frame.eccentricity(old)[1]
+            kept = least + max(0.3 * (before - least), 0.02 * along)
+            wedged = self.whole.is_thermal and frame.pad.offset < 0.5
+            if wedged and number in self._lost:
+                kept = max(kept, before + 0.02 * along)
+            elif wedged or across > least:
+                continue
+            new[frame.unknowns.tilt] += (kept - across) / frame.arm
         return new
 
     # --- tilts of pads far from their equilibrium -----------------------------------------------
@@ -349,7 +368,13 @@ class PadSearch:
             if self._asks(frame, above):
                 asked.append(number)
             elif above:
-                brackets[number] = (max(frame.level_tilt(q), limits[0]), limits[1])
+                least = frame.least_across(frame.eccentricity(q)[0])
+                if self.whole.is_thermal and frame.pad.offset < 0.5:
+                    least -= _THERMAL_WEDGE * frame.clearance
+                brackets[number] = (
+                    max(frame.level_tilt(q) + least / frame.arm, limits[0]),
+                    limits[1],
+                )
             q[frame.unknowns.tilt] = frame.idle_tilt(limits, q)
         full: Booleans | None = None
         if asked:
@@ -364,6 +389,11 @@ class PadSearch:
             number: _Root(*bracket, guess=float(guess[self.frames[number].unknowns.tilt]))
             for number, bracket in brackets.items()
         }
+
+    def as_found(self, q: Array, unloaded: frozenset[int]) -> Array:
+        """Begin at the displacements and with the unloaded pads of another mesh; return `q`."""
+        self._keep_out(unloaded, q)
+        return q
 
     @property
     def _fed(self) -> bool:

@@ -279,7 +279,7 @@ class _Progress:
         beyond = trapped or _beyond_limits(step.mapped.temperature)
         self.beyond = self.beyond + 1 if beyond else 0
         if self.kept is None:
-            if len(self.history) >= self.release and self._stagnates():
+            if len(self.history) >= self.release and full.any() and self._stagnates():
                 self.kept = full
                 return True
         elif step.residual < ROUGH_TOLERANCE and self.broken_rupture(step):

@@ -359,6 +359,29 @@ def test_plain_columns_load_with_numpy(one, tmp_path):
     assert columns[:, 5:].reshape(-1, 2, 2) == pytest.approx(one.damping[0, 0], rel=1e-8)
 
 
+def test_plain_columns_are_read_back(one, tmp_path):
+    (path,) = write_table(one, "txt", tmp_path, "b")
+    again = read_table(path)
+    assert again.speeds == pytest.approx(one.speeds, rel=1e-8)
+    assert again.stiffness[0, 0] == pytest.approx(one.stiffness[0, 0], rel=1e-8)
+    assert again.damping[0, 0] == pytest.approx(one.damping[0, 0], rel=1e-8)
+
+
+def test_a_sheet_in_columns_of_blanks(tmp_path):
+    path = tmp_path / "sheet.txt"
+    path.write_text(
+        "Drive end, 5 pads\n\n  Speed   Kxx   Kxy   Kyx   Kyy   Cxx  Cxy  Cyx  Cyy\n"
+        "  rpm  lb/in lb/in lb/in lb/in  lbf*s/in lbf*s/in lbf*s/in lbf*s/in\n"
+        "  3000  1e5  2e4 -3e4 2e5   100  -10   -10   200\n"
+        "  6000  2e5  2e4 -3e4 3e5   110  -10   -10   210\n"
+    )
+    table = read_table(path)
+    assert table.speeds == pytest.approx([100.0 * np.pi, 200.0 * np.pi])
+    assert table.stiffness[0, 0, 1] == pytest.approx(
+        np.array([[2e5, 2e4], [-3e4, 3e5]]) * 175.126835, rel=1e-6
+    )
+
+
 def test_matlab_file(table, tmp_path):
     from scipy.io import loadmat
 
