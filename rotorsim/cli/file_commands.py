@@ -23,6 +23,9 @@ class _Profile(StrEnum):
     PLAIN = "plain"
     GROOVED = "grooved"
     ELLIPTICAL = "elliptical"
+    OFFSET_HALVES = "offset_halves"
+    THREE_LOBE = "three_lobe"
+    HYBRID = "hybrid"
     PRESSURE_DAM = "pressure_dam"
     TILTING_PAD = "tilting_pad"
 
@@ -331,6 +334,7 @@ def _scenario_text(
     pads = profile is _Profile.TILTING_PAD
     bore = {
         _Profile.ELLIPTICAL: piece["elliptical"] + piece["grooved"],
+        _Profile.OFFSET_HALVES: piece["offset_halves"] + piece["grooved"],
         _Profile.PRESSURE_DAM: piece["grooved"] + piece["pressure_dam"],
     }.get(profile, piece[profile.value])
     oil = piece["oil"].format(

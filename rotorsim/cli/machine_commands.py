@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import InputError
 from ..rows import RPM, heads, number, shown, with_unit
 from ..study import machine_tables as tables
+from .drawing import rotor_in_text
 from .output import DONE, INCOMPLETE, Output, as_typed, film_progress, progress_bar
 from .tables import grid
 
@@ -62,7 +63,8 @@ def check_machine(output: Output, path: Path) -> int:
         "speeds": f"{len(speeds)}, {speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm",
     }  # fmt: skip
     supports = grid("Supports", *heads("name", "at mm", "kind"), rows=kinds)
-    output.results(document, lambda: [grid(loaded.title, "", "", rows=rows.items()), supports])
+    drawn, said = rotor_in_text(loaded), grid(loaded.title, "", "", rows=rows.items())
+    output.results(document, lambda: [drawn, said, supports])
     _say_free(output, loaded)
     return DONE
 

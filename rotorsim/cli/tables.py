@@ -24,6 +24,7 @@ from ..orbit.description import ORBIT_HEADS, ellipse_text, orbit_texts, whirl_ra
 from ..rows import QUANTITIES, RPM, number, shown_unit
 from ..study.inputs import input_rows
 from ..study.stability import late_whirl, verdict_word
+from .drawing import bearing_in_text
 from .output import as_typed
 
 if TYPE_CHECKING:
@@ -100,6 +101,7 @@ def point_table(point: OperatingPoint) -> Table:
 
 def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[RenderableType]:
     """Inputs, derived numbers at the highest speed, and the amount of work."""
+    yield bearing_in_text(scenario.bearing)
     yield _inputs(scenario)
     numbers = ("sommerfeld", "reynolds", "taylor", "peclet", "nahme")
     yield grid(

@@ -263,7 +263,7 @@ def loop_margins(system: control.StateSpace, feedback: StateFeedback, axis: int)
     if system.nstates > _MOST_STATES:
         raise InputError(
             f"has {system.nstates} states, margins are found for at most {_MOST_STATES}: reduce it "
-            "(control.balanced_reduction), or look at the closed loop's poles",
+            "(rotorsim.machine.reduction.reduced), or look at the closed loop's poles",
             key="system",
         )
     other = np.array(feedback.gain)

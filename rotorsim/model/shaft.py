@@ -166,6 +166,11 @@ class Disc:
             transverse_inertia=self.transverse_inertia,
         )  # fmt: skip
 
+    @property
+    def has_size(self) -> bool:
+        """Whether it is a disc that can be drawn, and no added mass."""
+        return self.polar_inertia > 0.0 and self.mass > 0.0
+
     @classmethod
     def from_dimensions(
         cls,

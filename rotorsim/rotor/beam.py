@@ -102,6 +102,22 @@ class Beam:
                     key="rotor.section.at", value=spans[0][0],
                 )  # fmt: skip
 
+    def outer_radius(self, at: float) -> float:
+        """Return the outer radius of the shaft at a place [m], the larger one at a step."""
+        spans = [(section, *self.span(section)) for section in self.sections]
+        return max(
+            float(self.at(np.array([at]), section)[1][0])
+            for section, left, right in spans
+            if left - 1e-9 <= at <= right + 1e-9
+        )
+
+    def disc_size(self, disc: Disc) -> tuple[float, float]:
+        """Return radius and width [m] of a steel disc of the same mass and polar inertia."""
+        shaft = self.outer_radius(disc.at)
+        outer = math.sqrt(max(2.0 * disc.polar_inertia / disc.mass - shaft**2, 1.2 * shaft**2))
+        area = math.pi * (outer**2 - shaft**2)
+        return outer, disc.mass / (self.material.density * area)
+
     @property
     def length(self) -> float:
         """Of the shaft [m]."""

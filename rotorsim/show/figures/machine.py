@@ -54,7 +54,7 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
     beam = machine.rotor.beam
     ax = axes_or_new(ax, (8.2, 3.6))
     top = max(s.outer_diameter for s in beam.sections) / 2.0
-    top = max([top, *(disc_size(disc, beam)[0] for disc in beam.discs if disc.polar_inertia)])
+    top = max([top, *(beam.disc_size(disc)[0] for disc in beam.discs if disc.polar_inertia)])
     for disc in beam.discs:
         _draw_disc(ax, disc, beam, top)
     for section in sorted(beam.sections, key=lambda one: one.layer):
@@ -65,7 +65,7 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
     )  # fmt: skip
     size = 0.16 * top * _MILLI
     for name, entry in zip(machine.support_names, machine.support, strict=True):
-        radius = _radius(beam, entry.at) * _MILLI
+        radius = beam.outer_radius(entry.at) * _MILLI
         x = entry.at * _MILLI
         for side in (-1.0, 1.0):
             tip = side * radius
@@ -77,7 +77,7 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
             ax.add_patch(Polygon(corners, closed=True, fc="w", ec=_SUPPORT, lw=1.4, zorder=4))
         _label(ax, x, -radius - 2.2 * size, name, _SUPPORT, "top")
     for entry in machine.seal:
-        radius, x = _radius(beam, entry.at) * _MILLI, entry.at * _MILLI
+        radius, x = beam.outer_radius(entry.at) * _MILLI, entry.at * _MILLI
         ax.plot([x, x], [radius, radius + 2 * size], color=_SEAL, lw=3.0, zorder=4)
         ax.plot([x, x], [-radius, -radius - 2 * size], color=_SEAL, lw=3.0, zorder=4)
     for at in dict.fromkeys(entry.at for entry in machine.probe):
@@ -116,19 +116,11 @@ def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
     ax.update_datalim([(z[0], -outer.max()), (z[1], outer.max())])
 
 
-def disc_size(disc: Disc, beam: Beam) -> tuple[float, float]:
-    """Return radius and width [m] of a steel disc of the same mass and polar inertia."""
-    shaft = _radius(beam, disc.at)
-    outer = np.sqrt(max(2.0 * disc.polar_inertia / disc.mass - shaft**2, 1.2 * shaft**2))
-    area = np.pi * (outer**2 - shaft**2)
-    return float(outer), float(disc.mass / (beam.material.density * area))
-
-
 def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
     x = disc.at * _MILLI
-    if disc.polar_inertia > 0.0 and disc.mass > 0.0:
-        outer, width = disc_size(disc, beam)
-        shaft = _radius(beam, disc.at)
+    if disc.has_size:
+        outer, width = beam.disc_size(disc)
+        shaft = beam.outer_radius(disc.at)
         for low in (shaft, -outer):
             box = (x - 0.5 * width * _MILLI, low * _MILLI)
             height = (outer - shaft) * _MILLI
@@ -142,22 +134,12 @@ def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
         _label(ax, x, -1.03 * top * _MILLI, disc.name, "0.2", "top")
 
 
-def _radius(beam: Beam, at: float) -> float:
-    """Return the outer radius of the shaft at a place [m], the larger one at a step."""
-    radii = []
-    for section in beam.sections:
-        left, right = beam.span(section)
-        if left - 1e-9 <= at <= right + 1e-9:
-            radii.append(float(beam.at(np.array([at]), section)[1][0]))
-    return max(radii)
-
-
 def _outermost(beam: Beam, at: float) -> float:
     """Return the outer radius of the shaft and its discs at a place [m]."""
-    found = _radius(beam, at)
+    found = beam.outer_radius(at)
     for disc in beam.discs:
-        if disc.polar_inertia > 0.0 and disc.mass > 0.0:
-            outer, width = disc_size(disc, beam)
+        if disc.has_size:
+            outer, width = beam.disc_size(disc)
             found = max(found, outer) if abs(at - disc.at) <= 0.5 * width else found
     return found
 

@@ -25,7 +25,7 @@ from ...study import machine_tables as tables
 from ...study.machine import MachineResult, points_with_fields
 from ...study.orbits import film_at_rest
 from ...text import markdown
-from ..figures.machine import disc_size, machine_campbell
+from ..figures.machine import machine_campbell
 from . import surfaces
 from .charts import Chart
 from .film_view import BACKGROUND, log_films
@@ -316,8 +316,8 @@ def _profile(result: MachineResult) -> tuple[Array, Array]:
     spans = [(*beam.span(one), one) for one in beam.sections]
     discs = []
     for disc in beam.discs:
-        if disc.polar_inertia > 0.0 and disc.mass > 0.0:
-            outer, width = disc_size(disc, beam)
+        if disc.has_size:
+            outer, width = beam.disc_size(disc)
             discs.append((disc.at - 0.5 * width, disc.at + 0.5 * width, outer))
     cuts = [node.position for node in rotor.nodes]
     cuts += [at for low, high, *_ in (*spans, *discs) for at in (low, high)]

@@ -21,7 +21,6 @@ from ...model.shaft import Disc
 from ...orbit import Orbit
 from ...orbit.motion import Motion, Station
 from ...rotor import Beam
-from ..figures.machine import disc_size
 from .film_view import BACKGROUND
 from .runs import ALARM, LINE, TEXT, TIME, Run, run_index, thin
 from .surfaces import MILLI, cylinder
@@ -64,8 +63,8 @@ def _drawn_size(disc: Disc, beam: Beam, shaft: float) -> tuple[float, float]:
 
     An added mass is a thick piece of the shaft.
     """
-    if disc.polar_inertia > 0.0 and disc.mass > 0.0:
-        return disc_size(disc, beam)
+    if disc.has_size:
+        return beam.disc_size(disc)
     return 1.4 * shaft, 0.7 * shaft
 
 
