@@ -18,7 +18,7 @@ from ..arrays import Array
 from ..model import Case, FlowRegime
 from .layers import LayerIntegrals, TurbulentIntegrals
 from .roughness import RoughFlow
-from .turbulence import TURBULENT_PRANDTL, integrate, layer_tables
+from .turbulence import TURBULENT_PRANDTL, integrate, layer_tables, wall_table
 
 POISEUILLE_POWER = 3
 """d ln(flow)/d ln(h) of the Poiseuille part of Dowson's equation at given F_2."""
@@ -100,8 +100,8 @@ class TurbulentFlow:
         pressure, axial, shear = (np.empty((n, m, shares)) for _ in range(3))
         heat, conduction = np.empty((4, n, m, shares)), np.empty((n, m, shares + 1))
         integrate(
-            layer_tables(across), layers.viscosity, thickness, layers.f0, self.density,
-            surface_speed, lower, upper, np.array(self.bulk or ((0.0,) * 4,) * 3),
+            layer_tables(across), wall_table(), layers.viscosity, thickness, layers.f0,
+            self.density, surface_speed, lower, upper, np.array(self.bulk or ((0.0,) * 4,) * 3),
             self.diffusion if shares else 0.0, stresses, weight, f0, f2, f2_axial, g, g_tangent,
             rates, pressure, axial, shear, heat, conduction,
         )  # fmt: skip

@@ -34,6 +34,8 @@ _LAST, _INTERVALS = 214.0, 4096
 """x up to which int x^n/(1 + eps) is summed; from there tanh(x/d) = 1 to rounding."""
 _FIRST, _STEP, _NODES = math.log(0.02), 0.03, 668
 """Nodes of the layers' tables in ln(s)."""
+_WALL_FIRST, _WALL_STEP, _WALL_NODES = math.log(1e-2), 0.125, (136, 136)
+"""First node, step and nodes of the table of the walls' resistance in ln(x) and ln(a)."""
 _TOLERANCE = 1e-11
 """Square of Newton's last change of ln(tau), about the relative error that is left."""
 _MAX_STEPS = 60
@@ -64,6 +66,20 @@ def layer_tables(layers: int) -> Array:
         table[:, :, 12 + 2 * q] = _eddy(x).T
         table[:, :, 13 + 2 * q] = (x * KAPPA * np.tanh(x / SUBLAYER) ** 2).T
     return table
+
+
+@cache
+def wall_table() -> Array:
+    """Return ln of the mean of 1/(1 + a eps) from a wall to x, over ln(x) and ln(a)."""
+    place = np.exp(_WALL_FIRST + _WALL_STEP * np.arange(_WALL_NODES[0]))
+    factor = np.exp(_WALL_FIRST + _WALL_STEP * np.arange(_WALL_NODES[1]))
+    points, weights = np.polynomial.legendre.leggauss(8)
+    low, width = place[:-1, None], np.diff(place)[:, None]
+    eddy = _eddy(low + 0.5 * width * (1.0 + points))
+    parts = 0.5 * width[:, :, None] * weights[:, None] / (1.0 + factor * eddy[:, :, None])
+    # Below the first place there are no eddies.
+    sums = np.concatenate([np.zeros((1, factor.size)), np.cumsum(parts.sum(axis=1), axis=0)])
+    return np.asarray(np.log((place[0] + sums) / place[:, None]))
 
 
 def _moment(s: Array, low: Array, high: Array, n: int) -> Array:
@@ -201,15 +217,16 @@ def _ratio(reynolds, base, factor, exponent, added):
 
 @kernel
 def integrate(
-    table: Array, viscosity: Array, thickness: Array, laminar_f0: Array, density: float,
-    speed: float, lower: float, upper: float, bulk: Array, diffusion: float, stresses: Array,
+    table: Array, walls: Array, viscosity: Array, thickness: Array, laminar_f0: Array,
+    density: float, speed: float, lower: float, upper: float, bulk: Array, diffusion: float,
+    stresses: Array,
     weight: Array, f0: Array, f2: Array, f2_axial: Array, g: Array, g_tangent: Array, rates: Array,
     pressure_share: Array, axial_share: Array, shear_share: Array, heat_share: Array,
     conduction: Array,
 ) -> None:  # fmt: skip
     """Fill all integrals of every column.
 
-    table : Of `layer_tables`.
+    table, walls : Of `layer_tables` and `wall_table`.
     viscosity : (n, m, k) array [Pa s]
     thickness, laminar_f0 : (n, m) arrays [m], [1/(Pa s)]
     bulk : (3, 4) array. Shear, k_x, k_y of a bulk law: base, factor, exponent, added (see
@@ -394,36 +411,40 @@ def integrate(
                     moments[k, 0, 1] - center * moments[k, 0, 0]
                     + moments[k, 1, 1] - center * moments[k, 1, 0]
                 )  # fmt: skip
-            _conduct(eddies, mu, logarithm, w * diffusion, conduction[i, j])
-
-
-# Gauss points in (distance from the wall)^(1/3): the conduction falls by orders of magnitude
-# within the first layer, where the eddies die out like the distance's third power.
-_POINTS = tuple(0.5 + 0.5 * p for p in np.polynomial.legendre.leggauss(8)[0].tolist())
-_WEIGHTS = tuple(0.5 * w for w in np.polynomial.legendre.leggauss(8)[1].tolist())
+            _conduct(
+                walls, eddies, mu, logarithms, logarithm, w * diffusion, conduction[i, j]
+            )  # fmt: skip
 
 
 @kernel
-def _conduct(eddies, viscosity, logarithm, diffusion, conduction):
+def _wall_resistance(table, place, factor):
+    """Return the mean of 1/(1 + a eps) from the wall to x; `place`: ln(x), `factor`: ln(a)."""
+    u = min(max((place - _WALL_FIRST) / _WALL_STEP, 0.0), _WALL_NODES[0] - 1.000001)
+    v = min(max((factor - _WALL_FIRST) / _WALL_STEP, 0.0), _WALL_NODES[1] - 1.000001)
+    i, j = int(u), int(v)
+    u, v = u - i, v - j
+    return math.exp(
+        (1.0 - u) * ((1.0 - v) * table[i, j] + v * table[i, j + 1])
+        + u * ((1.0 - v) * table[i + 1, j] + v * table[i + 1, j + 1])
+    )
+
+
+@kernel
+def _conduct(walls, eddies, viscosity, logarithms, logarithm, diffusion, conduction):
     """Return the conduction between neighbouring layers and to the walls over the laminar one.
 
     The resistance int dz/(1 + mu c_p eps/(k Pr_t)) from centre to centre, and from each wall to the
-    first centre.
+    first centre, where the conduction falls by orders of magnitude.
     """
     layers = viscosity.shape[0]
     conduction[:] = 1.0
     if diffusion == 0.0:
         return
+    half = logarithm - math.log(2.0 * layers)
     for wall in range(2):
-        mu = viscosity[0 if wall == 0 else layers - 1]
-        reach = 0.5 / layers * math.exp(logarithm) / mu
-        resistance = 0.0
-        for q in range(8):
-            y = _POINTS[q]
-            x = reach * y * y * y
-            eddy = KAPPA * (x - SUBLAYER * math.tanh(x / SUBLAYER))
-            resistance += _WEIGHTS[q] * 3.0 * y * y / (1.0 + diffusion * mu * eddy)
-        conduction[0 if wall == 0 else layers] = 1.0 / resistance
+        k = 0 if wall == 0 else layers - 1
+        factor = math.log(diffusion) + logarithms[k]
+        conduction[k + wall] = 1.0 / _wall_resistance(walls, half - logarithms[k], factor)
     below = 0.0
     for k in range(layers):
         gain = diffusion * viscosity[k]

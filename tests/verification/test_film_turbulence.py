@@ -30,6 +30,7 @@ from rotorsim.film.layers import isoviscous_layers, layer_integrals
 from rotorsim.film.losses import friction_force
 from rotorsim.film.pad_solution import solve_pads
 from rotorsim.film.solution import solve_film
+from rotorsim.film.turbulence import KAPPA, SUBLAYER, _wall_resistance, wall_table
 from rotorsim.model import Bearing, LoadTarget, ThermalSettings
 
 RHO, MU, GAP = 860.0, 0.02, 1e-4
@@ -332,3 +333,14 @@ def test_random_bearings_from_laminar_to_turbulent(flow):
         for one, two in ((here.stiffness, there.stiffness), (here.damping, there.damping)):
             assert np.abs(two - one).max() < 0.05 * np.abs(one).max()
     assert converged >= 36
+
+
+@pytest.mark.parametrize("factor", [10.0, 300.0, 3000.0])
+@pytest.mark.parametrize("reach", [1.0, 20.0, 500.0])
+def test_resistance_of_the_film_next_to_a_wall(reach: float, factor: float):
+    distance = reach * np.linspace(0.0, 1.0, 4001) ** 3
+    middle = 0.5 * (distance[1:] + distance[:-1])
+    eddies = KAPPA * (middle - SUBLAYER * np.tanh(middle / SUBLAYER))
+    mean = np.sum(np.diff(distance) / (1.0 + factor * eddies)) / reach
+    found = _wall_resistance(wall_table(), math.log(reach), math.log(factor))
+    assert found == pytest.approx(mean, rel=2e-3)
