@@ -6,6 +6,7 @@ Bad input raises; a numerical failure does not: it is a `SolveStatus` that trave
 
 from __future__ import annotations
 
+from datetime import date, time
 from pathlib import Path
 
 from .text import printable
@@ -43,7 +44,7 @@ class InputError(RotorsimError, ValueError):
         self.key = key
         self.value = value
         where = [printable(part) for part in (self.source, key) if part]
-        shown = str(value) if isinstance(value, Path) else value
+        shown = str(value) if isinstance(value, Path | date | time) else value
         found = "" if value is None else f" (found: {shown!r})"
         super().__init__(": ".join([*where, message + found]))
 

@@ -87,6 +87,7 @@ def solve_case(
     return point, solution.warm_start if usable else None
 
 
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")  # they end as a status
 def solved_film(
     case: Case, speed: float, initial: WarmStart | None = None, walls: WallsOf = choose_walls
 ) -> FilmSolution:
@@ -105,6 +106,7 @@ def solved_film(
     return solver(case, speed, walls=walls)
 
 
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def operating_point(
     case: Case, speed: float, solution: FilmSolution, *, keep_fields: bool = False
 ) -> OperatingPoint:

@@ -63,6 +63,10 @@ from .scenario.scenario import TitleEntry
 _ROTATIONS = ("clockwise", "counterclockwise")
 
 
+_ELEVATION = 0.01
+"""Largest elevation of a support, relative to the shaft's length."""
+
+
 @dataclass(frozen=True)
 class RotorDrawing:
     """A shaft from its drawing, with the unbalances that it is given."""
@@ -197,6 +201,14 @@ class MachineFile:
                     "another support stands at this place; what acts beside it is a [[seal]]",
                     key=f"support[{i}].at",
                 )
+        most = _ELEVATION * beam.length
+        for i, entry in enumerate(self.support):
+            if abs(entry.elevation) > most:
+                raise InputError(
+                    f"must be at most a hundredth of the shaft's length, {most * 1e3:.3g} mm: a "
+                    "shaft bends linearly no further",
+                    key=f"support[{i}].elevation", value=entry.elevation,
+                )  # fmt: skip
         if beam.axial_force < 0.0:
             limit = buckling_load(beam, places)
             if -beam.axial_force >= limit:

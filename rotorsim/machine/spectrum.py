@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from typing import Any, Protocol
 
 import numpy as np
@@ -91,10 +91,22 @@ class MachineSpectrum:
     machine: Machine
     count: int
 
-    @property
+    @cached_property
     def complete(self) -> bool:
-        """Whether it gives all modes."""
-        return self.machine.size <= max(_DENSE, self.count)
+        """Whether it gives all modes.
+
+        Unknowns without mass and damping, as those of a shaft without density, have none.
+        """
+        most = max(_DENSE, self.count)
+        if self.machine.size <= most:
+            return True
+        rotor = self.machine.rotor
+        acting = (rotor.mass != 0.0) | (rotor.damping != 0.0) | (rotor.gyroscopic != 0.0)
+        moving = np.ones(self.machine.size, dtype=bool)
+        moving[: rotor.size] = acting.any(axis=0)
+        for place in self.machine.places:
+            moving[place] = True
+        return int(moving.sum()) <= most
 
     def __call__(self, speed: float, /) -> Eigenmodes | None:
         """Return the modes at one speed [rad/s]."""

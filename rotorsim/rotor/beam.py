@@ -116,7 +116,7 @@ class Beam:
         shaft = self.outer_radius(disc.at)
         outer = math.sqrt(max(2.0 * disc.polar_inertia / disc.mass - shaft**2, 1.2 * shaft**2))
         area = math.pi * (outer**2 - shaft**2)
-        return outer, disc.mass / (self.material.density * area)
+        return outer, disc.mass / (STEEL.density * area)
 
     @property
     def length(self) -> float:

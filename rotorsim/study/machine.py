@@ -20,6 +20,7 @@ from ..files.scenario import Scenario
 from ..film.geometry import rotation
 from ..machine.branches import Modes, Verdict
 from ..machine.machine import Machine, Mount
+from ..machine.matrices import massive_unknowns
 from ..machine.modes import known_speeds, machine_spectrum, modes
 from ..machine.peaks import node_at
 from ..machine.response import UnbalanceResponse, unbalance_response
@@ -216,12 +217,16 @@ def pinned_mesh_change(description: MachineFile) -> float:
     for refinement in (1, 2):
         rotor = description.rotor_with_unbalance(refinement)
         held = [k for one in description.support for k in rotor.planes[node_at(rotor, one.at)]]
-        parts = (
+        stiffness, mass = (
             np.delete(np.delete(matrix, held, axis=0), held, axis=1)
             for matrix in (rotor.stiffness, rotor.mass)
         )
-        squares: Any = eigh(*parts, eigvals_only=True)
-        elastic = squares[squares > _RIGID * squares[-1]]
+        heavy = massive_unknowns(mass)
+        light = np.setdiff1d(np.arange(len(mass)), heavy)  # of a shaft without density
+        passed = np.linalg.solve(stiffness[np.ix_(light, light)], stiffness[np.ix_(light, heavy)])
+        stiffness = stiffness[np.ix_(heavy, heavy)] - stiffness[np.ix_(heavy, light)] @ passed
+        squares: Any = eigh(stiffness, mass[np.ix_(heavy, heavy)], eigvals_only=True)
+        elastic = squares[squares > _RIGID * squares.max(initial=0.0)]
         lowest.append(np.sqrt(elastic[:_MESH_MODES]))
     count = min(map(len, lowest))
     return float(np.abs(lowest[1][:count] / lowest[0][:count] - 1.0).max(initial=0.0))

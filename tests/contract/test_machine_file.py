@@ -92,6 +92,7 @@ def test_grade_and_amount_of_unbalance():
         (SHAFT + SPRINGS + '[[probe]]\nat = "2 m"\n', "probe[0].at"),
         (SHAFT + SPRINGS.replace('= "20 MN/m"', '= "-20 MN/m"'), "support[1].stiffness"),
         (SHAFT + SPRINGS.replace('= "20 kN', '= "-20 kN'), "support[0].damping"),
+        (SHAFT + SPRINGS + 'elevation = "150 mm"\n', "support[1].elevation"),
         (SHAFT.replace('"beam"', '"beam"\naxial_force = "-2 MN"') + SPRINGS, "rotor.axial_force"),
     ],
 )

@@ -261,6 +261,27 @@ def test_a_massless_shaft_with_a_disc_is_a_jeffcott_rotor():
     assert found.damped_frequency[0] == pytest.approx([wanted, wanted], rel=1e-4)
 
 
+@pytest.mark.parametrize("elements", [8, 40])
+def test_a_shaft_without_density_makes_no_modes_of_its_own(elements: int):
+    """What has no mass and no damping follows statically; rounding makes no modes of it."""
+    spans = (Section(0.5 * LENGTH, DIAMETER, elements=elements),) * 2
+    disc = Disc(0.4 * LENGTH, 50.0, 1.0, 0.6)
+    supports = ConstantSupport(1e8, 0.0)
+    light, heavy = (
+        modes(
+            Machine.on_identical(
+                beam_rotor(Beam(spans, (disc,), Material(210e9, density))), supports
+            ),
+            [100.0, 500.0], count=6,
+        )
+        for density in (0.0, 1.0)
+    )  # fmt: skip
+    assert set(light.verdicts) == {"undamped"}
+    assert light.undamped.all()
+    first, second = (np.sort(one.oscillating().damped_frequency)[:, :4] for one in (light, heavy))
+    assert first == pytest.approx(second, rel=1e-3)
+
+
 def test_a_shaft_between_pins_buckles_at_eulers_load():
     beam = uniform(32, shear=False)
     euler = np.pi**2 * BENDING / LENGTH**2
