@@ -25,8 +25,9 @@ _BLOCK = 2
 """Vectors that the Krylov space grows by: two planes make double eigenvalues."""
 _EXTRA = 10
 """Size of the Krylov space beyond five times the number of pairs that are wanted."""
-_SHIFT = 3e-4
-"""Of the highest frequency: the least shift."""
+_SHIFT = 1e-3
+"""Of the elements' typical frequency: the least shift. That of the shortest element may be orders
+above, and modes far below the shift have no digits."""
 _CONVERGED = 1e-11
 """Relative residual of a Ritz value that counts as converged."""
 _SINGULAR = 1e14
@@ -207,7 +208,7 @@ def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes
     speed : [rad/s]
 
     Block Arnoldi on the inverse of the first-order pencil, shifted on the real axis to minus the
-    speed, or a small part of the highest frequency, so that a free rotor's zero eigenvalues are
+    speed, or a small part of the elements' typical frequency, so that a free rotor's zero eigenvalues are
     regular. Masses are scaled to 1 and time to the shift. A mode counts where its relative residual
     is below 1e-11; the space grows until enough do. The accuracy is that of the matrices' entries:
     with left eigenvector y, |y|' (|K| + |s| |D| + |s|^2 |M|) |x| roundings over |y' (2 s M + D) x|,
@@ -224,8 +225,8 @@ def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes
     # A band's entry (w + i - j, j) belongs to row i.
     row = np.clip(np.arange(n) + np.arange(-w, w + 1)[:, None], 0, n - 1)
     both = scale[row] * scale
-    highest = np.sqrt(np.linalg.norm(both * stiffness * (heavy[row] & heavy)))
-    rate = max(abs(speed), _SHIFT * float(highest))
+    stiff = np.abs(stiffness[w][heavy]) / diagonal[heavy]
+    rate = max(abs(speed), _SHIFT * float(np.sqrt(np.median(stiff))))
     light = np.abs(stiffness[w]) + rate * np.abs(damping[w])
     scale = np.where(heavy, scale, rate / np.sqrt(np.where(light > 0.0, light, 1.0)))
     both = scale[row] * scale

@@ -344,6 +344,12 @@ class Bearing:
                 f"bearing.groove[{self.grooves.index(groove)}].length",
                 groove.length,
             )
+            hole = getattr(groove.restrictor, "diameter", 0.0)
+            recess = min(groove.length or self.length, groove.extent * self.journal_radius)
+            _require(
+                hole <= recess, f"must fit into its recess, {recess * 1e3:.3g} mm wide",
+                f"bearing.groove[{self.grooves.index(groove)}].restrictor.diameter", hole,
+            )  # fmt: skip
         for place, pocket in enumerate(self.pockets):
             low, high = pocket.reach(self.length)
             _require(

@@ -223,9 +223,9 @@ def pinned_mesh_change(description: MachineFile) -> float:
         )
         heavy = massive_unknowns(mass)
         light = np.setdiff1d(np.arange(len(mass)), heavy)  # of a shaft without density
-        passed = np.linalg.solve(stiffness[np.ix_(light, light)], stiffness[np.ix_(light, heavy)])
-        stiffness = stiffness[np.ix_(heavy, heavy)] - stiffness[np.ix_(heavy, light)] @ passed
-        squares: Any = eigh(stiffness, mass[np.ix_(heavy, heavy)], eigvals_only=True)
+        passed = np.linalg.solve(stiffness[light][:, light], stiffness[light][:, heavy])
+        stiffness = stiffness[heavy][:, heavy] - stiffness[heavy][:, light] @ passed
+        squares: Any = eigh(stiffness, mass[heavy][:, heavy], eigvals_only=True)
         elastic = squares[squares > _RIGID * squares.max(initial=0.0)]
         lowest.append(np.sqrt(elastic[:_MESH_MODES]))
     count = min(map(len, lowest))

@@ -29,6 +29,14 @@ mass = "1200 kg"
 [orbit]
 speed = "15000 rpm"
 """
+RECESS = """
+[[bearing.groove]]
+center = "90 deg"
+extent = "40 deg"
+length = "20 mm"
+supply_pressure = "2 MPa"
+restrictor = { kind = "orifice", diameter = "0.5 m" }
+"""
 GROOVES = """
 [[bearing.groove]]
 center = "90 deg"
@@ -219,6 +227,7 @@ BAD = [
     ),
     # grooves and arcs
     (END, END + GROOVES, "bearing.groove[1].center", ["100 deg", "overlaps", "10 deg"]),
+    (END, END + RECESS, "bearing.groove[0].restrictor.diameter", ["fit into", "0.5 m"]),
     (END, END + GROOVES.replace("100 deg", "111 deg"), "bearing.groove[1].center", ["too coarse"]),
     (END, END + GROOVES.replace("20 deg", "175 deg"), "bearing.groove", ["leave no film", "350"]),
     (END, END + GROOVES.replace("20 deg", "360 deg"), "bearing.groove[0].extent", ["360 deg"]),

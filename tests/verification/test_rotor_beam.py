@@ -282,6 +282,25 @@ def test_a_shaft_without_density_makes_no_modes_of_its_own(elements: int):
     assert first == pytest.approx(second, rel=1e-3)
 
 
+@pytest.mark.parametrize("shear", [True, False])
+@pytest.mark.parametrize("short", [1e-3, 1e-4])
+def test_a_very_short_element_damps_nothing(short: float, shear: bool):
+    """Its stiffness is ten orders above the shaft's, and its frequency six."""
+
+    def beam(*middle: Section) -> Beam:
+        half = Section(0.5, 0.05, elements=10)
+        return Beam((half, *middle, half), (Disc(0.3, 10.0, 0.1, 0.06),), STEEL, shear=shear)
+
+    speeds, supports = [0.0, 100.0, 500.0], ConstantSupport(1e7, 0.0)
+    found, wanted = (
+        modes(Machine.on_identical(beam_rotor(one), supports), speeds, count=6)
+        for one in (beam(Section(short, 0.05, elements=1)), beam())
+    )
+    assert set(found.verdicts) == {"undamped"}
+    first, second = (np.sort(one.oscillating().damped_frequency)[:, :6] for one in (found, wanted))
+    assert first == pytest.approx(second, rel=4.0 * short + 1e-4)
+
+
 def test_a_shaft_between_pins_buckles_at_eulers_load():
     beam = uniform(32, shear=False)
     euler = np.pi**2 * BENDING / LENGTH**2
