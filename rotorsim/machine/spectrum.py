@@ -208,11 +208,12 @@ def _lowest_eigenmodes(machine: Machine, count: int, speed: float) -> Eigenmodes
     speed : [rad/s]
 
     Block Arnoldi on the inverse of the first-order pencil, shifted on the real axis to minus the
-    speed, or a small part of the elements' typical frequency, so that a free rotor's zero eigenvalues are
-    regular. Masses are scaled to 1 and time to the shift. A mode counts where its relative residual
-    is below 1e-11; the space grows until enough do. The accuracy is that of the matrices' entries:
-    with left eigenvector y, |y|' (|K| + |s| |D| + |s|^2 |M|) |x| roundings over |y' (2 s M + D) x|,
-    plus that of the Ritz value: its residual, and roundings of the inverse's norm.
+    speed, or a small part of the elements' typical frequency, so that a free rotor's zero
+    eigenvalues are regular. Masses are scaled to 1 and time to the shift. A mode counts where its
+    relative residual is below 1e-11; the space grows until enough do. The accuracy is that of the
+    matrices' entries: with left eigenvector y, |y|' (|K| + |s| |D| + |s|^2 |M|) |x| roundings over
+    |y' (2 s M + D) x|, plus that of the Ritz value: its residual, and roundings of the inverse's
+    norm.
     """
     form = machine.band_form
     mass, damping, stiffness = machine.banded(speed)
