@@ -63,8 +63,8 @@ def check_machine(output: Output, path: Path) -> int:
         "speeds": f"{len(speeds)}, {speeds[0] * RPM:.0f} to {speeds[-1] * RPM:.0f} rpm",
     }  # fmt: skip
     supports = grid("Supports", *heads("name", "at mm", "kind"), rows=kinds)
-    drawn, said = rotor_in_text(loaded), grid(loaded.title, "", "", rows=rows.items())
-    output.results(document, lambda: [drawn, said, supports])
+    said = grid(loaded.title, "", "", rows=rows.items())
+    output.results(document, lambda: [rotor_in_text(loaded), said, supports])
     _say_free(output, loaded)
     return DONE
 

@@ -25,9 +25,8 @@ from ..model import Case, EccentricityTarget, LoadTarget
 from .banded import NoFilmError, SingularFilmError
 from .equilibrium import CLEARANCE_KEPT
 from .geometry import bore_offset, rotation
-from .layers import isoviscous_layers
 from .mesh import groove_edges, in_full_groove
-from .problem import FilmProblem, film_problem, film_state
+from .problem import FilmProblem, film_problem, film_state, supply_layers
 
 _Position = tuple[float, float]
 _Corner = tuple[float, float]
@@ -110,10 +109,8 @@ class ForceField:
             problem = film_problem(self.case, self.speed, own, (float(x), float(y)))
         else:
             problem = self.mesh[0]
-        viscosity = float(self.case.lubricant.viscosity(self.case.thermal.supply_temperature))
-        layers = isoviscous_layers(problem.mesh.shape, viscosity)
         with suppress(NoFilmError, SingularFilmError):
-            state = film_state(problem, (x, y), layers)
+            state = film_state(problem, (x, y), supply_layers(problem))
             if state.solution.converged and np.all(np.isfinite(state.force)):
                 return turn @ state.force
         return None

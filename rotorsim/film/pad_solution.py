@@ -14,9 +14,9 @@ from ..status import SolveStatus
 from .anderson import AndersonMixer
 from .banded import NoFilmError, SingularFilmError
 from .heat import Heat
-from .layers import LayerIntegrals, isoviscous_layers, layer_integrals
+from .layers import LayerIntegrals, layer_integrals
 from .pads import PadSearch
-from .problem import FilmProblem, FilmState, film_problem, film_state
+from .problem import FilmProblem, FilmState, film_problem, film_state, supply_layers
 from .solution import FilmSolution, WallsOf, WarmStart
 from .thd import ThermalFilm, packed, solve_thermal_film, uniform_heat, unpacked
 from .walls import choose_walls
@@ -105,7 +105,7 @@ def _solve(case: Case, speed: float, initial: WarmStart | None, walls: WallsOf) 
     if problem.is_thermal and heat is not None and heat.temperature.shape == _heat_shape(problem):
         thermal = _thermal(search, search.settle(q, _warm_layers(problem, heat)), heat, walls)
         return _conclude(search, thermal.state, thermal, None)
-    layers = _supply_layers(problem)
+    layers = supply_layers(problem)
     nearby, cold = _on_coarser_mesh(case, speed) if initial is None else None, None
     if nearby is not None:
         with suppress(NoFilmError, SingularFilmError):
@@ -136,16 +136,11 @@ def _on_coarser_mesh(case: Case, speed: float) -> tuple[Array, frozenset[int]] |
     try:
         problem = film_problem(case, speed, case.bearing, (0.0, 0.0))
         search = PadSearch(problem, case.target)
-        layers = _supply_layers(problem)
+        layers = supply_layers(problem)
         cold = _isothermal(search, search.first_guess(), layers, tolerance=_ROUGHLY)
     except (NoFilmError, SingularFilmError):
         return None
     return (cold.state.displacement, search.unloaded) if cold.converged else None
-
-
-def _supply_layers(problem: FilmProblem) -> LayerIntegrals:
-    viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
-    return isoviscous_layers(problem.mesh.shape, viscosity)
 
 
 def _in_turn(

@@ -23,7 +23,7 @@ from .elastic import ElasticBore, elastic_bore
 from .flow_law import FlowLaw, flow_law
 from .geometry import CENTER, FilmGeometry, film_geometry
 from .growth import hot_clearances, with_clearances
-from .layers import LayerIntegrals
+from .layers import LayerIntegrals, isoviscous_layers
 from .mesh import FilmMesh, build_mesh
 from .operator import FaceTopology, FilmOperator, face_topology, film_operator
 from .rupture import (
@@ -156,6 +156,12 @@ def _oil_supply(bearing: Bearing, mesh: FilmMesh, thermal: ThermalSettings) -> O
     count = len(bearing.pads)
     flow = np.full(count, bearing.supply_flow / count / mesh.multiplicity)
     return OilSupply(flow, thermal.hot_oil_carry_over, mesh.supply[:, 0])
+
+
+def supply_layers(problem: FilmProblem) -> LayerIntegrals:
+    """Return the integrals of a film that has the supply's temperature throughout."""
+    viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
+    return isoviscous_layers(problem.mesh.shape, viscosity)
 
 
 def film_state(

@@ -33,9 +33,8 @@ from .equilibrium import (
 )
 from .first_position import ForceField, crossing, first_positions
 from .heat import Heat
-from .layers import isoviscous_layers
 from .mesh import mid_thickness
-from .problem import FilmProblem, FilmState, film_problem, film_state
+from .problem import FilmProblem, FilmState, film_problem, film_state, supply_layers
 from .rupture import rupture_condition
 from .thd import (
     ROUGH_TOLERANCE,
@@ -174,8 +173,7 @@ def _unsolved(case: Case, speed: float, status: SolveStatus, message: str) -> Fi
     position = _first_position(case)
     problem = film_problem(case, speed, case.bearing, position)
     nearer = _inside(problem, None, position)
-    viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-    state = film_state(problem, nearer, isoviscous_layers(problem.mesh.shape, viscosity))
+    state = film_state(problem, nearer, supply_layers(problem))
     return FilmSolution(problem, state, None, 0.0, status, message, 1, 0.0)
 
 
@@ -499,8 +497,7 @@ def _iterate_isothermal(
     proceed: Callable[[FilmState], bool] | None = None,
 ) -> _Iterate:
     """Iterate the position of a film of the supply temperature's viscosity."""
-    viscosity = float(problem.lubricant.viscosity(problem.thermal.supply_temperature))
-    layers = isoviscous_layers(problem.mesh.shape, viscosity)
+    layers = supply_layers(problem)
     full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
     off, step, stuck, backtracking = 0.0, 0, 0, Backtracking()
     while True:

@@ -54,7 +54,7 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
     beam = machine.rotor.beam
     ax = axes_or_new(ax, (8.2, 3.6))
     top = max(s.outer_diameter for s in beam.sections) / 2.0
-    top = max([top, *(beam.disc_size(disc)[0] for disc in beam.discs if disc.polar_inertia)])
+    top = max([top, *(beam.disc_size(disc)[0] for disc in beam.discs if disc.has_size)])
     for disc in beam.discs:
         _draw_disc(ax, disc, beam, top)
     for section in sorted(beam.sections, key=lambda one: one.layer):
