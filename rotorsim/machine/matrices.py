@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Booleans, Indices
 from ..errors import InputError
 
+_NOT_HELD = 1e14
+"""Condition number of the stiffness from which an unknown counts as free."""
 _SINGULAR = 1e12
 """Condition number from which the damping of massless unknowns counts as singular."""
 
@@ -36,6 +38,24 @@ def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> A
 def massive_unknowns(mass: Array) -> Indices:
     """Return the indices of the unknowns with inertia, of (..., n, n) mass matrices."""
     return np.flatnonzero(np.any(mass != 0.0, axis=-1).reshape(-1, mass.shape[-1]).any(axis=0))
+
+
+def static_following(stiffness: Array, idle: Booleans) -> Array:
+    """Return the motion of all unknowns for unit motions of those that are not `idle`, (n, n - i).
+
+    The idle ones have neither mass nor damping.
+    Raises InputError: Nothing holds an idle unknown.
+    """
+    follow = np.eye(idle.size)[:, ~idle]
+    if idle.any():
+        own = stiffness[idle][:, idle]
+        if np.linalg.cond(own) > _NOT_HELD:
+            raise InputError(
+                "singular: a node without mass, damping and stiffness is not held; give it a mass",
+                key="stiffness",
+            )
+        follow[idle] = -np.linalg.solve(own, stiffness[idle][:, ~idle])
+    return follow
 
 
 def first_order(mass: ArrayLike, damping: ArrayLike, stiffness: ArrayLike) -> tuple[Array, Array]:

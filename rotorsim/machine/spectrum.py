@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array, ComplexArray
-from ..errors import InputError
 from .banded import BandForm
 from .machine import Machine
-from .matrices import first_order
+from .matrices import first_order, static_following
 
 _MatrixOf = Callable[[float], Array]
 _ROUNDINGS = 10.0
@@ -30,7 +29,6 @@ _SHIFT = 1e-3
 above, and modes far below the shift have no digits."""
 _CONVERGED = 1e-11
 """Relative residual of a Ritz value that counts as converged."""
-_SINGULAR = 1e14
 _NEWTON_STEPS = 30
 _FOLLOWED = 1e-12, 1e-8
 """Relative step of inverse iteration at which an eigenvalue is known, or as well as it can be."""
@@ -163,15 +161,8 @@ def _every_mode(mass: Array, damping: Array, stiffness: Array) -> Eigenmodes | N
         return None
     acting = (mass != 0.0) | (damping != 0.0)
     idle = ~(acting.any(axis=0) | acting.any(axis=1))
-    follow = np.eye(idle.size)[:, ~idle]
+    follow = static_following(stiffness, idle)
     if idle.any():
-        own = stiffness[idle][:, idle]
-        if np.linalg.cond(own) > _SINGULAR:
-            raise InputError(
-                "singular: a node without mass, damping and stiffness is not held; give it a mass",
-                key="stiffness",
-            )
-        follow[idle] = -np.linalg.solve(own, stiffness[idle][:, ~idle])
         # K may have cross terms: the idle rows vanish, so that only the others' rows are left.
         mass, damping, stiffness = (part[~idle] @ follow for part in (mass, damping, stiffness))
     found = all_eigenmodes(first_order(mass, damping, stiffness)[0], mass.shape[0])

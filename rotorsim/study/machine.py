@@ -20,7 +20,7 @@ from ..files.scenario import Scenario
 from ..film.geometry import rotation
 from ..machine.branches import Modes, Verdict
 from ..machine.machine import Machine, Mount
-from ..machine.matrices import massive_unknowns
+from ..machine.matrices import static_following
 from ..machine.modes import known_speeds, machine_spectrum, modes
 from ..machine.peaks import node_at
 from ..machine.response import UnbalanceResponse, unbalance_response
@@ -221,11 +221,9 @@ def pinned_mesh_change(description: MachineFile) -> float:
             np.delete(np.delete(matrix, held, axis=0), held, axis=1)
             for matrix in (rotor.stiffness, rotor.mass)
         )
-        heavy = massive_unknowns(mass)
-        light = np.setdiff1d(np.arange(len(mass)), heavy)  # of a shaft without density
-        passed = np.linalg.solve(stiffness[light][:, light], stiffness[light][:, heavy])
-        stiffness = stiffness[heavy][:, heavy] - stiffness[heavy][:, light] @ passed
-        squares: Any = eigh(stiffness, mass[heavy][:, heavy], eigvals_only=True)
+        idle = np.logical_not(mass.any(axis=0))  # of a shaft without density
+        stiffness = stiffness[~idle] @ static_following(stiffness, idle)
+        squares: Any = eigh(stiffness, mass[~idle][:, ~idle], eigvals_only=True)
         elastic = squares[squares > _RIGID * squares.max(initial=0.0)]
         lowest.append(np.sqrt(elastic[:_MESH_MODES]))
     count = min(map(len, lowest))
