@@ -11,14 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import get_lapack_funcs
 
 from ..arrays import Array, Booleans
 from ..threads import one_blas_thread
 from .kernels import kernel
+from .lapack import factor_band, solve_band
 from .operator import FilmOperator
-
-_factorise, _solve = get_lapack_funcs(("pbtrf", "pbtrs"), dtype=np.float64)
 
 
 class NoFilmError(ArithmeticError):
@@ -28,74 +26,106 @@ class NoFilmError(ArithmeticError):
 class SingularFilmError(ArithmeticError):
     """The film's matrix is not positive definite (NaN, or a film closed everywhere)."""
 
+    @classmethod
+    def at(cls, pivot: int) -> SingularFilmError:
+        """Return the error of a factorisation that ended at `pivot`."""
+        return cls(f"the film's matrix is not finite or not positive definite (pivot {pivot})")
+
 
 @dataclass(frozen=True)
-class _FilmFactor:
+class FilmFactor:
     """Cholesky factor of the operator on the active cells; `solve` may be called repeatedly.
 
-    factor : (width + 1, cells) array. Diagonals of the lower factor, as LAPACK keeps them.
+    band : (cells, width + 1) array. Columns of the lower factor, from the diagonal down.
     order : Columns of cells in the order of the band.
     active : (n, m) bool array
     """
 
-    factor: Array
+    band: Array
     order: NDArray[np.int64]
     active: Booleans
 
     def solve(self, right: Array) -> Array:
         """Solve for (..., n, m) right-hand sides; inactive cells give 0."""
-        n, m = self.active.shape
-        flat = np.asarray(right, dtype=float).reshape(-1, n, m)
-        chosen = self.active[self.order]
-        packed = np.where(chosen, flat[:, self.order, :], 0.0).reshape(flat.shape[0], -1).T
-        solved, info = _solve(self.factor, packed, lower=1, overwrite_b=1)
-        if info != 0:
-            raise SingularFilmError(f"band solve failed ({info})")
-        result = np.zeros_like(flat)
-        result[:, self.order, :] = solved.T.reshape(flat.shape[0], -1, m)
-        return result.reshape(np.shape(right))
+        flat = np.ascontiguousarray(right, dtype=float).reshape(-1, *self.active.shape)
+        return solve_cells(self.band, self.order, self.active, flat).reshape(np.shape(right))
 
 
-def factor_operator(operator: FilmOperator, active: Booleans) -> _FilmFactor:
+def factor_operator(operator: FilmOperator, active: Booleans) -> FilmFactor:
     """Factor the conductance matrix restricted to the `active` cells."""
-    order, folded = column_order(operator.interior, active)
-    if not order.size:
+    if not active.any():
         raise SingularFilmError("no film is left to solve")
-    n, m = active.shape
-    width = (2 * m if folded else m) if order.size > 1 else m - 1
-    width = min(width, order.size * m - 1)
-    band = np.zeros((order.size * m, width + 1))
-    position = np.full(n, -1, dtype=np.int64)
-    position[order] = np.arange(order.size)
-    _fill_band(operator.conductance, operator.interior, active, order, position, band)
-    if not np.isfinite(band.sum()):
-        raise SingularFilmError("the film's matrix is not finite")
     # On so narrow a band several threads only wait for each other.
     with one_blas_thread():
-        factor, info = _factorise(band.T, lower=1, overwrite_ab=1)
-    if info != 0:
-        raise SingularFilmError(f"the film's matrix is not positive definite (pivot {info})")
-    return _FilmFactor(factor=factor, order=order, active=active)
+        band, order, pivot = factor_cells(operator.conductance, operator.interior, active)
+    if pivot != 0:
+        raise SingularFilmError.at(pivot)
+    return FilmFactor(band, order, active)
 
 
-def column_order(interior: Booleans, active: Booleans) -> tuple[NDArray[np.int64], bool]:
+@kernel
+def factor_cells(conductance, interior, active):
+    """Return the factored band of the active cells, the order of its columns, 0 or a bad pivot."""
+    n, m = active.shape
+    order, folded = column_order(interior, active)
+    width = (2 * m if folded else m) if order.size > 1 else m - 1
+    band = np.zeros((order.size * m, min(width, order.size * m - 1) + 1))
+    position = np.full(n, -1)
+    for c in range(order.size):
+        position[order[c]] = c
+    _fill_band(conductance, interior, active, order, position, band)
+    return band, order, factor_band(band)
+
+
+@kernel
+def solve_cells(band, order, active, right):
+    """Solve for (count, n, m) right-hand sides; inactive cells give 0."""
+    count, n, m = right.shape
+    packed = np.zeros((count, order.size * m))
+    for k in range(count):
+        for c in range(order.size):
+            for j in range(m):
+                if active[order[c], j]:
+                    packed[k, c * m + j] = right[k, order[c], j]
+    solve_band(band, packed)
+    found = np.zeros((count, n, m))
+    for k in range(count):
+        for c in range(order.size):
+            for j in range(m):
+                found[k, order[c], j] = packed[k, c * m + j]
+    return found
+
+
+@kernel
+def column_order(interior, active):
     """Return the columns in band order, and whether the ring had to be folded."""
-    n = active.shape[0]
-    used: Booleans = np.logical_or.reduce(active, axis=1)
-    before = np.roll(active, 1, axis=0)
-    joined = np.any(interior[0] & active & before, axis=1)  # to the column before
-    cuts = np.flatnonzero(~joined)
-    if cuts.size:
-        order = (cuts[0] + np.arange(n)) % n
-        return order[used[order]], False
-    order = np.empty(n, dtype=np.int64)
-    order[0::2] = np.arange((n + 1) // 2)
-    order[1::2] = n - 1 - np.arange(n // 2)
-    return order, True
+    n, m = active.shape
+    used = np.zeros(n, dtype=np.bool_)
+    cut = -1
+    for i in range(n - 1, -1, -1):
+        joined = False
+        for j in range(m):
+            used[i] = used[i] or active[i, j]
+            # to the column before
+            joined = joined or (interior[0, i, j] and active[i, j] and active[i - 1, j])
+        if not joined:
+            cut = i
+    order, count = np.empty(n, dtype=np.int64), 0
+    if cut < 0:
+        for i in range(n):
+            order[i] = i // 2 if i % 2 == 0 else n - 1 - i // 2
+        return order, True
+    for step in range(n):
+        i = (cut + step) % n
+        if used[i]:
+            order[count] = i
+            count += 1
+    return order[:count], False
 
 
 @kernel
 def _fill_band(conductance, interior, active, order, position, band):
+    """Add the matrix of the active cells to a band of zeros, the lower half, column by column."""
     n, m = active.shape
     for c in range(order.size):
         i = order[c]

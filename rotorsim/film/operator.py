@@ -192,25 +192,13 @@ def film_operator(
     shape = topology.interior.shape
     conductance, face_thickness = np.empty(shape), np.empty(shape)
     couette = np.empty((2, *shape[1:]))
-    stepped = _assemble(
+    stepped = assemble(
         thickness[1:], layers.f2, layers.f2_axial, layers.g, topology.interior, topology.spacing,
         topology.dx, topology.dy, surface_speed, conductance, face_thickness, couette,
     )  # fmt: skip
     steps = None
     if stepped:
         steps = _step_faces(topology, thickness[1:], layers, surface_speed)
-        conductance[steps.at] = steps.conductance
-        along = steps.at[0] < 2
-        couette[tuple(index[along] for index in steps.at)] = steps.couette[along]
-        # The thickness at which the mean F_2 of both sides conducts as much.
-        here, there = steps.at[1:], steps.beyond[1:]
-        mobility = np.where(
-            along, layers.f2[here] + layers.f2[there],
-            layers.f2_axial[here] + layers.f2_axial[there],
-        )  # fmt: skip
-        width = np.where(along, topology.dy[here[1]], topology.dx[here[0]])
-        cubed = steps.conductance * topology.spacing[steps.at] / (0.5 * mobility * width)
-        face_thickness[steps.at] = np.cbrt(cubed)
     return FilmOperator(
         conductance=conductance,
         interior=topology.interior,
@@ -278,31 +266,54 @@ def neighbour(face: int, i: int, j: int, n: int, m: int) -> tuple[int, int]:
 
 
 @kernel
-def _assemble(
+def assemble(
     sides, f2, f2_axial, g, interior, spacing, dx, dy, surface_speed, conductance, thickness,
     couette,
 ):  # fmt: skip
+    """Fill conductance, thickness and Couette flow of the faces; return whether the film steps.
+
+    At a step the flow through both half cells is the same (see `StepFaces`), and the thickness of
+    the face is that at which the mean F_2 of both sides conducts as much.
+    """
     n, m = f2.shape
     stepped = False
     for i in range(n):
         for j in range(m):
             for face in range(4):
+                joined = interior[face, i, j]
+                if joined and face % 2 == 1:
+                    continue  # the same face as seen from the cell behind it
                 k, q = neighbour(face, i, j, n, m)
                 along = face < 2
                 width = dy[j] if along else dx[i]
                 h = sides[face, i, j]
                 mobility = f2[i, j] if along else f2_axial[i, j]
-                open_share = 1.0 - g[i, j]
-                if interior[face, i, j]:
+                drawn = h**COUETTE_POWER * (1.0 - g[i, j])
+                conducted = 0.0
+                if joined:
                     there = sides[face ^ 1, k, q]
-                    stepped = stepped or abs(h - there) > _STEP * (h + there)
-                    h = 0.5 * (h + there)
-                    mobility = 0.5 * (mobility + (f2[k, q] if along else f2_axial[k, q]))
-                    open_share = 0.5 * (open_share + 1.0 - g[k, q])
-                thickness[face, i, j] = h
-                conductance[face, i, j] = (
-                    h**POISEUILLE_POWER * mobility * width / spacing[face, i, j]
-                )
+                    beyond = f2[k, q] if along else f2_axial[k, q]
+                    mean = 0.5 * (mobility + beyond)
+                    if abs(h - there) > _STEP * (h + there):
+                        stepped = True
+                        own = h**POISEUILLE_POWER * mobility / (dx[i] if along else dy[j])
+                        other = there**POISEUILLE_POWER * beyond / (dx[k] if along else dy[q])
+                        share = other / (own + other)
+                        drawn = share * drawn + (1.0 - share) * there * (1.0 - g[k, q])
+                        conducted = 2.0 * own * share
+                        h = (conducted * spacing[face, i, j] / mean) ** (1.0 / 3.0)
+                    else:
+                        h = 0.5 * (h + there)
+                        drawn = h**COUETTE_POWER * 0.5 * (2.0 - g[i, j] - g[k, q])
+                    mobility = mean
+                if conducted == 0.0:
+                    conducted = h**POISEUILLE_POWER * mobility / spacing[face, i, j]
+                thickness[face, i, j], conductance[face, i, j] = h, conducted * width
                 if along:
-                    couette[face, i, j] = surface_speed * h**COUETTE_POWER * open_share * width
+                    couette[face, i, j] = surface_speed * drawn * width
+                if joined:
+                    behind = face ^ 1
+                    thickness[behind, k, q], conductance[behind, k, q] = h, conducted * width
+                    if along:
+                        couette[behind, k, q] = surface_speed * drawn * width
     return stepped

@@ -19,17 +19,21 @@ from ..bearing.interpolation import Coefficients
 from ..bearing.operating_point import condensed
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
+from ..film.compiled_force import FULL_SOMMERFELD, HALF_SOMMERFELD, REYNOLDS, packed_film
+from ..film.flow_law import LaminarFlow
 from ..film.geometry import film_geometry, rotation
 from ..film.layers import LayerIntegrals
 from ..film.linearization import linearize
 from ..film.pad_solution import solve_pads
 from ..film.problem import FilmProblem, FilmState, film_state
+from ..film.rupture import FedFilm
 from ..film.solution import FilmSolution, solve_film
 from ..machine.control import StateFeedback
 from ..machine.matrices import first_order
 from ..model import (
     Bearing,
     Case,
+    Cavitation,
     EccentricityTarget,
     FlowRegime,
     Inception,
@@ -37,9 +41,10 @@ from ..model import (
     ThermalModel,
 )
 from ..status import SolveStatus
+from . import kernels
 from .film_map import MAPPED, Progress, film_force_map
 from .force_map import FilmMapForce
-from .forces import BearingForce
+from .forces import BearingForce, CompiledForce
 
 _FIELD_SPEEDS, _SLOWEST_FIELD = 7, 0.1
 """Of heated films of a run through the speeds, and the slowest over the highest."""
@@ -137,8 +142,9 @@ class SolvedFilmForce:
         # A moving journal may press the film in several places at once. The rule of one stretch of
         # film from each beginning is for a film at rest: here it would make the force jump.
         mesh = replace(mesh, region=np.full_like(mesh.region, -1))
-        return cls(
-            problem=replace(solution.problem, mesh=mesh, geometry=geometry),
+        problem = replace(solution.problem, mesh=mesh, geometry=geometry)
+        return (CompiledFilmForce if _compilable(problem) else cls)(
+            problem=problem,
             layers=solution.state.layers,
             frame=solution.frame,
             bearing=solution.problem.bearing.turned(solution.frame),
@@ -267,6 +273,42 @@ class SolvedFilmForce:
         thin = geometry.land & (h < least)
         share = np.clip((rest - least) / (rest - h), 0.0, 1.0)
         return self.rest + float(share[:, thin.any(axis=0)].min()) * (q - self.rest)
+
+
+_CONDITIONS = {
+    Cavitation.REYNOLDS: REYNOLDS,
+    Cavitation.HALF_SOMMERFELD: HALF_SOMMERFELD,
+    Cavitation.FULL_SOMMERFELD: FULL_SOMMERFELD,
+}
+
+
+def _compilable(problem: FilmProblem) -> bool:
+    """Return whether `film.compiled_force` knows all that this film does."""
+    return (
+        problem.settings.cavitation in _CONDITIONS
+        and not isinstance(problem.rupture, FedFilm)
+        and isinstance(problem.flow_law, LaminarFlow)
+        and problem.elastic is None
+        and not problem.bearing.pads
+    )
+
+
+@dataclass
+class CompiledFilmForce(SolvedFilmForce):
+    """A film that is solved at every call in compiled code, some twenty times faster."""
+
+    def compiled(self, lowest_speed: float = 0.0, highest_speed: float = 0.0) -> CompiledForce:
+        """Return the compiled form; good at any speed."""
+        del lowest_speed, highest_speed
+        numbers, table = packed_film(
+            self.problem,
+            self.others or [(self.problem.speed, self.layers)],
+            _CONDITIONS[self.problem.settings.cavitation],
+            self.frame,
+            self.rest,
+            _THINNEST * self.radial_clearance,
+        )
+        return CompiledForce(kernels.SOLVED, numbers, table)
 
 
 @dataclass

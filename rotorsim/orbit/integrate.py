@@ -18,8 +18,7 @@ from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
 from ..rotor import Rotor
 from .analysis import recognise
 from .film_force import SolvedFilmForce
-from .forces import ActuatedFilm, CompilableForce, LinearForce, find_equilibrium
-from .kernels import film_force_series
+from .forces import ActuatedFilm, LinearForce, find_equilibrium
 from .motion import CHUNK_REVOLUTIONS, Motion, MotionProblem, last_pieces, pieces_of
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import OrbitProblem
@@ -77,17 +76,9 @@ def _simulate_pieces(
 ) -> Iterator[Orbit]:
     """Integrate piece by piece: status ``running`` but for the last one."""
     equilibrium = _equilibrium(problem)
-    motion, force = motion_problem(problem, equilibrium), problem.force
-    form = None
-    if isinstance(force, CompilableForce):
-        form = force.compiled(min(problem.schedule.speeds), max(problem.schedule.speeds))
+    motion = motion_problem(problem, equilibrium)
     for piece in pieces_of(motion, revolutions):
-        link = motion.system.links[0]
-        if form is None:
-            film = motion.system.link_forces(link, piece.q, piece.v, piece.speed).reshape(-1, 2)
-        else:
-            rows = np.ascontiguousarray(link.motion(piece.q, piece.v, piece.speed))
-            film = film_force_series(form.kind, rows, form.numbers, form.table)
+        film = piece.link_force(motion.system.links[0])
         yield _orbit(problem, piece, film, equilibrium)
 
 

@@ -1,6 +1,6 @@
-"""Compiled film forces on the journal: linear, short bearing, force map.
+"""Compiled film forces on the journal: linear, short bearing, force map, film solved on its cells.
 
-Numbers travel in plain arrays, packed by `rotorsim.orbit.forces` and `force_map`.
+Numbers travel in plain arrays, packed by `rotorsim.orbit.forces`, `force_map` and `film_force`.
 
 The short bearing with a ruptured film has a closed form. In the frame that turns at half the
 shaft's speed an isoviscous film is squeezed and nothing else: with e the journal's eccentricity, v
@@ -21,8 +21,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..compiled import compiled
+from ..film.compiled_force import film_at
 
-LINEAR, SHORT_BEARING, FORCE_MAP, SHORT_FULL, STOP = 0, 1, 2, 3, 4
+LINEAR, SHORT_BEARING, FORCE_MAP, SHORT_FULL, STOP, SOLVED = 0, 1, 2, 3, 4, 5
 """Force models the kernel knows."""
 
 
@@ -229,6 +230,8 @@ def film_force(
         return _linear_force(x, y, vx, vy, speed, numbers, table)
     if kind == STOP:
         return _stop_force(x, y, vx, vy, speed, numbers)
+    if kind == SOLVED:
+        return film_at(x, y, vx, vy, speed, numbers, table, np.empty((0, 2, 2)))
     return _squeeze_force(kind, x, y, vx, vy, speed, numbers, table)
 
 

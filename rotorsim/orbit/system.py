@@ -24,8 +24,10 @@ from scipy.interpolate import CubicSpline
 from ..arrays import Array, ComplexArray, Indices
 from ..compiled import compiled
 from ..errors import InputError
+from ..film.compiled_force import film_at
+from ..film.geometry import rotation
 from .forces import BearingForce, CompilableForce
-from .kernels import STOP, film_force
+from .kernels import SOLVED, STOP, film_force, film_force_series
 
 _SPEED_INTERVALS = 256
 GROUND = (-1, -1)
@@ -207,8 +209,9 @@ class MotionSystem:
             )  # fmt: skip
             clearance = link.force.radial_clearance if link.film else math.inf
             floats.append(
-                [*link.turning, link.side, link.drag, *link.offset, clearance, link.minimum_film]
-            )
+                [*link.turning, link.side, link.drag, *link.offset, clearance, link.minimum_film,
+                 math.cos(link.angle), math.sin(link.angle)]
+            )  # fmt: skip
         index, table, low, step = np.zeros(0, dtype=np.int64), np.zeros((1, 4, 0)), lowest, 1.0
         if self.block is not None:
             index = self.block.unknowns.astype(np.int64)
@@ -245,7 +248,7 @@ class MotionSystem:
             load_real=np.array([h.amplitude.real for h in loads]) if loads else empty,
             load_imag=np.array([h.amplitude.imag for h in loads]) if loads else empty,
             links=np.array(ints, dtype=np.int64).reshape(-1, 12),
-            link_numbers=np.array(floats, dtype=float).reshape(-1, 8),
+            link_numbers=np.array(floats, dtype=float).reshape(-1, 10),
             numbers=np.concatenate(numbers), tables=np.concatenate(tables), block=index,
             block_table=table, block_low=low, block_step=step,
         )  # fmt: skip
@@ -274,9 +277,14 @@ class MotionSystem:
 
     def link_forces(self, link: Link, q: Array, v: Array, speed: Array) -> Array:
         """Return the force (m, 2) of a link on its inner body along (m, n) motion [N]."""
+        if not speed.size:
+            return np.zeros((0, 2))
         if isinstance(link.force, CompilableForce):
+            turn = rotation(link.angle)
             rows = link.motion(q, v, speed)
-            return np.array([link.force.force(*row) for row in rows]).reshape(-1, 2)
+            rows[:, :2], rows[:, 2:4] = rows[:, :2] @ turn, rows[:, 2:4] @ turn
+            form = link.force.compiled(float(rows[:, 4].min()), float(rows[:, 4].max()))
+            return film_force_series(form.kind, rows, form.numbers, form.table) @ turn.T
         rows = zip(q, v, speed, strict=True)
         return np.array([self._pull(link, a, b, float(w))[0][:2] for a, b, w in rows])
 
@@ -294,8 +302,7 @@ class MotionSystem:
         if solved is None:
             return self._differences(link.force, here, rate, float(turning), slopes)
         turn = np.eye(here.size)
-        c, s = math.cos(link.angle), math.sin(link.angle)
-        turn[:2, :2] = [[c, -s], [s, c]]
+        turn[:2, :2] = rotation(link.angle)
         motion = turn.T @ here, turn.T @ rate, float(turning)
         if not slopes:
             return (turn @ solved.forces(*motion),)
@@ -381,15 +388,27 @@ def link_place(k: int, q: Array, v: Array, p: Plain) -> tuple[float, ...]:
 
 
 @compiled()
+def _form(k: int, p: Plain) -> tuple[Array, Array]:
+    """Return numbers and table of the force of link k, views of all links'."""
+    links = p.links[k]
+    count = links[9] * links[10] * links[11]
+    table = p.tables[links[8] : links[8] + count].reshape((links[9], links[10], links[11]))
+    return p.numbers[links[6] : links[6] + links[7]], table
+
+
+@compiled()
 def link_force(
     k: int, x: float, y: float, vx: float, vy: float, ring: float, w: float, p: Plain
 ) -> tuple[float, float, float]:
     """Return the force (x, y) of link k on its inner body, and its torque on the ring."""
     links, f = p.links[k], p.link_numbers[k]
-    numbers = p.numbers[links[6] : links[6] + links[7]]
-    count = links[9] * links[10] * links[11]
-    table = p.tables[links[8] : links[8] + count].reshape((links[9], links[10], links[11]))
-    fx, fy = film_force(links[0], x, y, vx, vy, f[0] * w + f[1] * ring, numbers, table)
+    numbers, table = _form(k, p)
+    c, s = f[8], f[9]
+    along, across = film_force(
+        links[0], c * x + s * y, c * y - s * x, c * vx + s * vy, c * vy - s * vx,
+        f[0] * w + f[1] * ring, numbers, table,
+    )  # fmt: skip
+    fx, fy = c * along - s * across, s * along + c * across
     torque = 0.0
     if links[5] >= 0:
         eps2 = min((x * x + y * y) / (f[6] * f[6]), 1.0 - 1e-9)
@@ -462,6 +481,37 @@ def _add(force: Array, link: NDArray[np.int64], fx: float, fy: float, torque: fl
 
 
 @compiled()
+def _slopes(k: int, q: Array, v: Array, w: float, scale: Array, p: Plain) -> Array:
+    """Return minus the derivatives of a link's force and torque by x, y, vx, vy, ring speed."""
+    link, f = p.links[k], p.link_numbers[k]
+    place = np.array(link_place(k, q, v, p))
+    slopes = np.zeros((3, 5))
+    if link[0] == SOLVED and link[5] < 0:
+        numbers, table = _form(k, p)
+        film, turn = np.zeros((2, 2, 2)), np.array([[f[8], -f[9]], [f[9], f[8]]])
+        here, rate = turn.T @ place[:2], turn.T @ place[2:4]
+        film_at(here[0], here[1], rate[0], rate[1], f[0] * w, numbers, table, film)
+        slopes[:2, :2], slopes[:2, 2:4] = turn @ film[0] @ turn.T, turn @ film[1] @ turn.T
+        return slopes
+    moved = np.empty(5)
+    length = 1e-6 * max(scale[link[1]], abs(place[0]), abs(place[1]))
+    per_second = max(abs(w), 1.0)
+    for j in range(5):
+        if j == 4 and link[5] < 0:
+            continue
+        # of a ring the speed moves the force as that of the shaft does
+        step = length if j < 2 else (length * per_second if j < 4 else 1e-6 * per_second)
+        moved[:] = place
+        moved[j] = place[j] + step
+        up = link_force(k, moved[0], moved[1], moved[2], moved[3], moved[4], w, p)
+        moved[j] = place[j] - step
+        low = link_force(k, moved[0], moved[1], moved[2], moved[3], moved[4], w, p)
+        for i in range(3):
+            slopes[i, j] = (low[i] - up[i]) / (2.0 * step)
+    return slopes
+
+
+@compiled()
 def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[Array, Array]:
     """Return stiffness and damping matrix (n, n) of all forces at a motion.
 
@@ -478,38 +528,26 @@ def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[A
             for j in range(m):
                 stiffness[p.block[i], p.block[j]] += row[i * m + j]
                 damping[p.block[i], p.block[j]] += row[(m + i) * m + j]
-    moved = np.empty(5)
     for k in range(p.links.shape[0]):
-        link = p.links[k]
-        place = np.array(link_place(k, q, v, p))
-        length = 1e-6 * max(scale[link[1]], abs(place[0]), abs(place[1]))
-        rate = max(abs(w), 1.0)
+        link, slopes = p.links[k], _slopes(k, q, v, w, scale, p)
         for j in range(5):
             if j == 4 and link[5] < 0:
                 continue
-            # of a ring the speed moves the force as that of the shaft does
-            step = length if j < 2 else (length * rate if j < 4 else 1e-6 * rate)
-            moved[:] = place
-            moved[j] = place[j] + step
-            up = link_force(k, moved[0], moved[1], moved[2], moved[3], moved[4], w, p)
-            moved[j] = place[j] - step
-            low = link_force(k, moved[0], moved[1], moved[2], moved[3], moved[4], w, p)
             target = stiffness if j < 2 else damping
             for i in range(3):
-                slope = (low[i] - up[i]) / (2.0 * step)
                 row_in = link[1 + i] if i < 2 else link[5]
                 if row_in < 0:
                     continue
                 row_out = link[3 + i] if i < 2 else -1
                 column = link[1 + j % 2] if j < 4 else link[5]
                 other = link[3 + j % 2] if j < 4 else -1
-                target[row_in, column] += slope
+                target[row_in, column] += slopes[i, j]
                 if row_out >= 0:
-                    target[row_out, column] -= slope
+                    target[row_out, column] -= slopes[i, j]
                 if other >= 0:
-                    target[row_in, other] -= slope
+                    target[row_in, other] -= slopes[i, j]
                     if row_out >= 0:
-                        target[row_out, other] += slope
+                        target[row_out, other] += slopes[i, j]
     return stiffness, damping
 
 

@@ -14,7 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array, Booleans
-from ..banded import factor_operator
+from ...threads import one_blas_thread
+from ..banded import (
+    FilmFactor,
+    SingularFilmError,
+    factor_cells,
+    factor_operator,
+    solve_cells,
+)
 from ..kernels import kernel
 from ..operator import FilmOperator
 from .base import ConnectedFilm, PressureSolution, Terms, source_term, with_fixed
@@ -122,35 +129,49 @@ def _coarsened(operator: FilmOperator) -> FilmOperator:
 def _active_set(
     operator: FilmOperator, source: Array, allowed: Booleans, full: Booleans
 ) -> PressureSolution:
-    scale = float(np.abs(source).max())
+    with one_blas_thread():
+        pressure, full, band, order, steps, pivot = active_set(
+            operator.conductance, operator.interior, source, allowed, full
+        )
+    if pivot > 0:
+        raise SingularFilmError.at(pivot)
+    factor = FilmFactor(band, order, full)
     if not full.any():
-        full = allowed & (source > 0.0)
-    steps, converged = 0, False
-    factor = factor_operator(operator, full) if full.any() else None
-    pressure = np.zeros(source.shape)
-    while steps < _MAX_ACTIVE_SET_STEPS and factor is not None:
-        pressure = factor.solve(source)
-        steps += 1
-        update = np.empty_like(full)
-        changed = _update_set(
-            operator.conductance, operator.interior, source, pressure, full, allowed,
-            1e-13 * scale, update,
-        )  # fmt: skip
-        if changed == 0:
-            converged = True
-            break
-        full = update
-        if not full.any():
-            break
-        factor = factor_operator(operator, full)
-    if factor is None or not full.any():
         # No cell is pushed: the whole film is ruptured, which is the solution.
         factor = factor_operator(operator, ~operator.fixed)
-        empty = np.zeros_like(allowed)
-        nothing = with_fixed(operator, np.zeros_like(source))
-        return PressureSolution(nothing, nothing, empty, factor, steps, True)
     pressure = with_fixed(operator, pressure)
-    return PressureSolution(pressure, pressure, full, factor, steps, converged)
+    return PressureSolution(pressure, pressure, full, factor, steps, pivot == 0)
+
+
+@kernel
+def active_set(conductance, interior, source, allowed, start):
+    """Find the cells that are full: p >= 0 there, and oil is drawn away from all others.
+
+    start : Cells tried first.
+    Returns pressure and full cells, their factored band and its order, the linear solves, and 0;
+    the bad pivot of a film without a solution; -1 where the cells did not settle.
+    """
+    tolerance = 1e-13 * np.abs(source).max()
+    full = start.copy() if start.any() else allowed & (source > 0.0)
+    pressure, update = np.zeros_like(source), np.empty_like(full)
+    band, order, steps = np.empty((0, 1)), np.empty(0, dtype=np.int64), 0
+    right = source.reshape(1, *source.shape)
+    while steps < _MAX_ACTIVE_SET_STEPS:
+        if not full.any():
+            pressure[:] = 0.0
+            return pressure, full, band, order, steps, 0
+        band, order, pivot = factor_cells(conductance, interior, full)
+        if pivot != 0:
+            return pressure, full, band, order, steps, pivot
+        pressure = solve_cells(band, order, full, right)[0]
+        steps += 1
+        changed = _update_set(
+            conductance, interior, source, pressure, full, allowed, tolerance, update
+        )
+        if changed == 0:
+            return pressure, full, band, order, steps, 0
+        full[:] = update
+    return pressure, full, band, order, steps, -1
 
 
 def _on_frozen_set(operator: FilmOperator, source: Array, full: Booleans) -> PressureSolution:
