@@ -8,10 +8,8 @@ the matrix is an M-matrix.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import Array, Booleans
 from ...threads import one_blas_thread
@@ -23,10 +21,12 @@ from ..banded import (
     solve_cells,
 )
 from ..kernels import kernel
-from ..operator import FilmOperator
+from ..operator import FilmOperator, neighbour
 from .base import ConnectedFilm, PressureSolution, Terms, source_term, with_fixed
 
 _MAX_ACTIVE_SET_STEPS = 400
+_PATIENCE = 3
+"""Linear solves from a neighbouring film, before a coarser mesh is asked where the film is full."""
 _COARSEST = 16
 """Cells around below which no coarser mesh is used for the first guess."""
 
@@ -48,8 +48,7 @@ class Reynolds(ConnectedFilm):
         film = ~operator.fixed
         if terms.frozen is not None:
             return operator, _on_frozen_set(operator, source, terms.frozen)
-        guess = _coarse_guess(operator, source) if terms.start is None else terms.start
-        solution = _active_set(operator, source, film, guess & film)
+        solution = _active_set(operator, source, film, terms.start)
         if region is None:
             return operator, solution
         allowed = film.copy()
@@ -60,79 +59,77 @@ class Reynolds(ConnectedFilm):
         return operator, solution
 
 
-def _coarse_guess(operator: FilmOperator, source: Array) -> Booleans:
+def _coarse_guess(
+    conductance: Array, interior: Booleans, fixed: Booleans, source: Array
+) -> Booleans:
     """Return full cells of the same film on a mesh twice as coarse, itself begun on a coarser one.
 
     The active set moves by about a cell a step, so that without this the number of steps would grow
     with the mesh.
     """
     n, m = source.shape
-    if n % 2 or m % 2 or n < 2 * _COARSEST or m < 4:
-        return ~operator.fixed
-    coarse = _coarsened(operator)
-    summed = source.reshape(n // 2, 2, m // 2, 2).sum(axis=(1, 3))
-    film = ~coarse.fixed
+    if n < 2 * _COARSEST or m < 4:
+        return ~fixed
+    coarse = _coarsened(conductance, interior, fixed, source)
+    film = ~coarse[2]
     if not film.any():  # lands of one cell between grooves
-        return ~operator.fixed
-    solution = _active_set(coarse, summed, film, _coarse_guess(coarse, summed) & film)
-    return np.repeat(np.repeat(solution.full, 2, axis=0), 2, axis=1)
+        return ~fixed
+    guess = _coarse_guess(*coarse) & film
+    _, full, *_ = active_set(coarse[0], coarse[1], coarse[3], film, guess)
+    return full[_group(np.arange(n), n)][:, _group(np.arange(m), m)]
 
 
-def _coarsened(operator: FilmOperator) -> FilmOperator:
-    """Return the operator on pairs of cells.
+@kernel
+def _group(i, n):
+    """Return the pair of n cells that cell i belongs to; the last of an odd number are three."""
+    return np.minimum(i // 2, n // 2 - 1)
+
+
+@kernel
+def _coarsened(conductance, interior, fixed, source):
+    """Return the film's faces, fixed cells and sources on pairs of cells.
 
     Faces in a row carry together, over twice the distance.
     """
-
-    def outer_faces(field: NDArray[Any]) -> tuple[NDArray[Any], ...]:
-        return field[0, 0::2], field[1, 1::2], field[2, :, 0::2], field[3, :, 1::2]
-
-    def along(face: NDArray[Any]) -> NDArray[Any]:  # west and east faces: two rows of cells
-        return face.reshape(face.shape[0], -1, 2)
-
-    def around(face: NDArray[Any]) -> NDArray[Any]:  # south and north faces: two columns
-        return face.reshape(-1, 2, face.shape[1]).transpose(0, 2, 1)
-
-    west, east, south, north = outer_faces(operator.conductance)
-    conductance = 0.5 * np.stack(
-        [f.sum(axis=2) for f in (along(west), along(east), around(south), around(north))]
-    )
-    west, east, south, north = outer_faces(operator.interior)
-    interior = np.stack(
-        [f.all(axis=2) for f in (along(west), along(east), around(south), around(north))]
-    )
-    west, east, south, north = outer_faces(operator.fixed_pressure)
-    pressure = np.stack(
-        [f.mean(axis=2) for f in (along(west), along(east), around(south), around(north))]
-    )
-    n, m = operator.fixed.shape
-    fixed = operator.fixed.reshape(n // 2, 2, m // 2, 2).any(axis=(1, 3))
-    couette = np.stack(
-        [along(operator.couette[0, 0::2]).sum(axis=2), along(operator.couette[1, 1::2]).sum(axis=2)]
-    )
-    beside = (
-        np.roll(fixed, 1, 0),
-        np.roll(fixed, -1, 0),
-        np.roll(fixed, 1, 1),
-        np.roll(fixed, -1, 1),
-    )
-    return replace(
-        operator,
-        conductance=conductance,
-        interior=interior & ~fixed & ~np.stack(beside),
-        fixed_pressure=pressure,
-        couette=couette,
-        fixed=fixed,
-    )
+    n, m = source.shape
+    rows, columns = n // 2, m // 2
+    carried, joined = np.zeros((4, rows, columns)), np.ones((4, rows, columns), dtype=np.bool_)
+    held, flow = np.zeros((rows, columns), dtype=np.bool_), np.zeros((rows, columns))
+    for i in range(n):
+        k = _group(i, n)
+        for j in range(m):
+            q = _group(j, m)
+            flow[k, q] += source[i, j]
+            held[k, q] = held[k, q] or fixed[i, j]
+            for face in range(4):
+                a, b = neighbour(face, i, j, n, m)
+                at_end = (face == 2 and j == 0) or (face == 3 and j == m - 1)
+                if at_end or _group(a, n) != k or _group(b, m) != q:
+                    carried[face, k, q] += 0.5 * conductance[face, i, j]
+                    joined[face, k, q] = joined[face, k, q] and interior[face, i, j]
+    for k in range(rows):
+        for q in range(columns):
+            for face in range(4):
+                a, b = neighbour(face, k, q, rows, columns)
+                if held[k, q] or held[a, b]:
+                    joined[face, k, q] = False
+    return carried, joined, held, flow
 
 
 def _active_set(
-    operator: FilmOperator, source: Array, allowed: Booleans, full: Booleans
+    operator: FilmOperator, source: Array, allowed: Booleans, start: Booleans | None
 ) -> PressureSolution:
+    conductance, interior = operator.conductance, operator.interior
     with one_blas_thread():
-        pressure, full, band, order, steps, pivot = active_set(
-            operator.conductance, operator.interior, source, allowed, full
-        )
+        known = start is not None
+        if start is None:
+            start = _coarse_guess(conductance, interior, operator.fixed, source)
+        patience = _PATIENCE if known else _MAX_ACTIVE_SET_STEPS
+        found = active_set(conductance, interior, source, allowed, start & allowed, patience)
+        if found[-1] < 0 and known:  # far from the film that it started from
+            start = _coarse_guess(conductance, interior, operator.fixed, source)
+            found = active_set(conductance, interior, source, allowed, start & allowed)
+    pressure, full, band, order, steps, pivot = found
     if pivot > 0:
         raise SingularFilmError.at(pivot)
     factor = FilmFactor(band, order, full)
@@ -144,10 +141,10 @@ def _active_set(
 
 
 @kernel
-def active_set(conductance, interior, source, allowed, start):
+def active_set(conductance, interior, source, allowed, start, patience=_MAX_ACTIVE_SET_STEPS):
     """Find the cells that are full: p >= 0 there, and oil is drawn away from all others.
 
-    start : Cells tried first.
+    start : Cells tried first; patience : Linear solves.
     Returns pressure and full cells, their factored band and its order, the linear solves, and 0;
     the bad pivot of a film without a solution; -1 where the cells did not settle.
     """
@@ -156,7 +153,7 @@ def active_set(conductance, interior, source, allowed, start):
     pressure, update = np.zeros_like(source), np.empty_like(full)
     band, order, steps = np.empty((0, 1)), np.empty(0, dtype=np.int64), 0
     right = source.reshape(1, *source.shape)
-    while steps < _MAX_ACTIVE_SET_STEPS:
+    while steps < patience:
         if not full.any():
             pressure[:] = 0.0
             return pressure, full, band, order, steps, 0
