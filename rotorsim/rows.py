@@ -122,7 +122,7 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 
 @dataclass(frozen=True)
 class Quantity:
-    """How a quantity is shown.
+    """Name, unit and scale with which a quantity is shown.
 
     label, symbol : In words, and short for the head of a column.
     base : Unit where nothing else is asked for; `unit` is the one shown.

@@ -95,7 +95,7 @@ _Line = tuple[int, list[str]]
 
 @dataclass(frozen=True)
 class _Column:
-    """What a column holds: `name` is a key of `_KINDS`, one of `_MASSES`, or one of `_TEXT`."""
+    """Content of a column: `name` is a key of `_KINDS`, one of `_MASSES`, or one of `_TEXT`."""
 
     place: int
     name: str

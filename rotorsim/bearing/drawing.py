@@ -33,7 +33,7 @@ _GREAT_HEATING = 100.0
 
 @dataclass(frozen=True)
 class DrawingNumbers:
-    """What a drawing gives, as engineers compare bearings.
+    """Numbers of a drawing, as engineers compare bearings.
 
     diameter : [m]
     diametral_clearance : [m]

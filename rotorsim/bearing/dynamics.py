@@ -95,7 +95,7 @@ class FilmDynamics:
 
     @property
     def has_pads(self) -> bool:
-        """Whether there are displacements besides the journal's."""
+        """Return whether there are displacements besides the journal's."""
         return self.mass is not None
 
     def stated_coefficients(self) -> tuple[Array, Array, float | None]:

@@ -321,7 +321,7 @@ class OperatingPoint:
 
     @property
     def converged(self) -> bool:
-        """Whether the numbers may be used."""
+        """Return whether the numbers may be used."""
         return self.status is SolveStatus.CONVERGED
 
     @property

@@ -49,7 +49,7 @@ class WhirlThresholds:
 
 @dataclass(frozen=True)
 class _RouthCoefficients:
-    """What Routh and Hurwitz ask of m s^2 + C s + K, for any mass.
+    """Conditions of Routh and Hurwitz on m s^2 + C s + K, for any mass.
 
     Stable if and only if `trace_damping`, `cross` and `det_stiffness` are all above zero and
     ``det_damping * equivalent_stiffness > mass * det_shifted``.
@@ -69,7 +69,7 @@ class _RouthCoefficients:
 
     @property
     def may_be_stable(self) -> Booleans:
-        """Whether the conditions without the mass hold."""
+        """Return whether the conditions without the mass hold."""
         return (self.trace_damping > 0.0) & (self.cross > 0.0) & (self.det_stiffness > 0.0)
 
     def stable(self, mass: ArrayLike) -> Booleans:

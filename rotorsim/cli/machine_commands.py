@@ -310,7 +310,7 @@ def _analysed(output: Output, path: Path, workers: int | None) -> dict[str, Mach
 def analysed(
     output: Output, loaded: MachineFile, workers: int | None, models: Sequence[str] | None = None
 ) -> dict[str, MachineResult]:
-    """Machine solved with some of its thermal models, with progress."""
+    """Solve a machine with some of its thermal models, with progress."""
     from ..study.machine import analyse_machine, thermal_models
 
     models = models or thermal_models(loaded)
@@ -336,7 +336,7 @@ def _closing(
 
 
 def is_machine(path: Path) -> bool:
-    """Whether the file at `path` describes a machine."""
+    """Return whether the file at `path` describes a machine."""
     from ..files.machine import is_machine as described
 
     return described(path)

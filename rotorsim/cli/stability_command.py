@@ -218,7 +218,7 @@ def stability(
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:
-    """Where a rotor is stable: critical mass, modes over speed, thresholds, maps, tolerances.
+    """Find where a rotor is stable: critical mass, modes over speed, thresholds, maps, tolerances.
 
     Example: rotorsim stability coefficients/dal.nc --mass "1200 kg"
 
@@ -292,7 +292,7 @@ def stability(
 
 @dataclass(frozen=True)
 class _Work:
-    """What the analyses share."""
+    """Options that the analyses share."""
 
     output: Output
     source: Path
@@ -306,7 +306,7 @@ class _Work:
     speeds: str | None
 
     def table(self) -> CoefficientTable | None:
-        """Table at the source; None where it is no table.
+        """Return the table at the source; None where it is no table.
 
         Raises InputError: It is neither a table nor a scenario, or not as the options say.
         """
@@ -348,7 +348,7 @@ class _Work:
 
 
 def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[float] | None]:
-    """Values of both axes by dimension; None: left to the map."""
+    """Return the values of both axes by dimension; None: left to the map."""
     found: dict[str, list[float] | None] = {}
     for key, (text, values) in texts.items():
         if text is None:
@@ -437,7 +437,7 @@ def _machine_plane(
 
 
 def _named_texts(texts: Sequence[str] | None, key: str) -> dict[str, str]:
-    """``NAME=VALUE`` by name."""
+    """Return the values of ``NAME=VALUE`` texts by name."""
     found = {}
     for text in texts or ():
         name, sign, value = (part.strip() for part in text.partition("="))
@@ -563,7 +563,7 @@ def _report_failed(output: Output, bad: int, total: int) -> int:
 
 
 def _source(work: _Work) -> tuple[Scenario | None, CoefficientTable | None]:
-    """The scenario, or that of the table where it says; the table, if it is one."""
+    """Return the scenario, or that of the table where it says; the table, if it is one."""
     from ..files.scenario import load_scenario
 
     table = work.table()
@@ -571,7 +571,7 @@ def _source(work: _Work) -> tuple[Scenario | None, CoefficientTable | None]:
 
 
 def _solved(work: _Work, scenario: Scenario | None) -> CoefficientTable:
-    """Table of a scenario, solved."""
+    """Return the table of a scenario, solved."""
     assert scenario is not None
     path = table_path(work.source, Path())
     _, table = computed_table(work.output, scenario, path, work.workers, work.scheduler)
@@ -580,7 +580,7 @@ def _solved(work: _Work, scenario: Scenario | None) -> CoefficientTable:
 
 
 def _scenario_of(work: _Work, table: CoefficientTable) -> Scenario | None:
-    """Scenario that a table was made from, where it says."""
+    """Return the scenario that a table was made from, where it says."""
     from ..files.scenario import Scenario
 
     text = table.dataset.attrs.get("scenario")
@@ -658,7 +658,7 @@ def _wanted_rotor(
     scenario: Scenario | None, mass: float | None, shaft_stiffness: str | None,
     file: Path | None, nodes: str | None, dofs: int | None,
 ) -> Rotor | None:  # fmt: skip
-    """Rotor of the options, else the scenario's; None without either."""
+    """Return the rotor of the options, else the scenario's; None without either."""
     from ..files.rotors import load_rotor
     from ..rotor import Rotor
 
@@ -681,7 +681,7 @@ def _wanted_rotor(
 
 
 def _jeffcott(own: Rotor | None, mass: float | None, stiffness: float) -> Rotor:
-    """Jeffcott rotor of the options: `mass` is the disc's, what is not given the scenario's."""
+    """Return the Jeffcott rotor of the options, `mass` the disc's; the rest is the scenario's."""
     from ..rotor import Rotor
 
     parts = {} if own is None else dict(own.parameters)
@@ -693,7 +693,7 @@ def _jeffcott(own: Rotor | None, mass: float | None, stiffness: float) -> Rotor:
 
 
 def _node_list(text: str | None) -> tuple[int, ...] | None:
-    """Node numbers of ``--bearing-nodes``."""
+    """Return the node numbers of ``--bearing-nodes``."""
     if text is None:
         return None
     words = [word.strip() for word in text.split(",")]
@@ -707,7 +707,7 @@ def _node_list(text: str | None) -> tuple[int, ...] | None:
 def _wanted_tolerances(
     scenario: Scenario, texts: Sequence[str] | None, samples: int | None
 ) -> ToleranceSettings:
-    """The scenario's tolerances with those of the options."""
+    """Return the scenario's tolerances with those of the options."""
     from ..model.tolerances import KINDS, ToleranceSettings, parse_spread
 
     found: dict[str, Any] = {}

@@ -88,7 +88,7 @@ def study(
 
 
 def _parts(found: Study) -> list[Any]:
-    """Designs that no other beats, and what the study cost."""
+    """Return the designs that no other beats, and what the study cost."""
     from .tables import grid
 
     inputs = [

@@ -520,7 +520,7 @@ class _Imported:
         self.notes: list[str] = []
 
     def drawing(self) -> Drawing:
-        """Everything."""
+        """Return the whole drawing."""
         sections, rotor = self._sections()
         discs = [
             {

@@ -92,7 +92,7 @@ class MachineSpectrum:
 
     @cached_property
     def complete(self) -> bool:
-        """Whether it gives all modes.
+        """Return whether it gives all modes.
 
         Unknowns without mass and damping, as those of a shaft without density, have none.
         """

@@ -57,7 +57,7 @@ class BearingProfile(StrEnum):
 
 
 class Feed(StrEnum):
-    """How the oil comes to tilting pads, and what becomes of the hot oil that arrives with it."""
+    """Way of the oil to tilting pads, and what becomes of the hot oil that arrives with it."""
 
     FLOODED = "flooded"
     """The housing is full: hot oil and supply mix, and the films draw what they ask for."""
@@ -163,7 +163,7 @@ class Pocket:
 
     @property
     def is_ring(self) -> bool:
-        """Whether it runs all the way round."""
+        """Return whether it runs all the way round."""
         return self.end - self.start > FULL_TURN - 1e-6
 
     def reach(self, bearing_length: float) -> tuple[float, float]:

@@ -178,7 +178,7 @@ class Entry:
 
     @property
     def is_needed(self) -> bool:
-        """Whether there is no default."""
+        """Return whether there is no default."""
         return self.default is inspect.Parameter.empty
 
 

@@ -29,7 +29,7 @@ _Acceleration = Annotated[float, Quantity("acceleration", "10 m/s^2", "any")]
 
 
 class _Place(StrEnum):
-    """Where a load acts on a rotor of one disc, in the order of its nodes."""
+    """Places of a load on a rotor of one disc, in the order of its nodes."""
 
     JOURNAL = "journal"
     DISC = "disc"

@@ -142,7 +142,7 @@ class Operating:
 
     @property
     def target(self) -> Target:
-        """What fixes the journal."""
+        """Eccentricity ratio or load that fixes the journal."""
         if self.load is not None:
             return LoadTarget(self.load)
         assert self.eccentricity_ratio is not None

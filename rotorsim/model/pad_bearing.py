@@ -41,7 +41,7 @@ from .pads import (
 
 
 class PadLoad(StrEnum):
-    """Where the load points."""
+    """Direction of the load with respect to the pads."""
 
     BETWEEN_PADS = "between_pads"
     ON_PAD = "on_pad"
@@ -58,7 +58,7 @@ and one half is no more than a middle: measured bearings should be given theirs.
 
 @dataclass(frozen=True)
 class PadEntry:
-    """What a file says of one pad; None: as the others.
+    """Entries of one pad in a file; None: as the others.
 
     pivot_angle : [rad]
     pitch_inertia : See `Pad`.
@@ -86,7 +86,7 @@ class PadEntry:
 
 @dataclass(frozen=True)
 class PadSet(PadEntry):
-    """What all pads of a bearing share, and how many there are.
+    """Entries that all pads of a bearing share, and their number.
 
     load : Where the load points: then the first pivot stands half a pitch ahead of it, or in its
         line. In place of it, `pivot_angle` of the first pad.

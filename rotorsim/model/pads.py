@@ -19,7 +19,7 @@ Poisson = Annotated[float, Number(least=0.0, below=0.5)]
 
 
 class Pivot(ABC):
-    """What a pad rests on: force over deflection."""
+    """Support of a pad: force over deflection."""
 
     kind: ClassVar[str]
     pitches: ClassVar[bool] = False

@@ -15,7 +15,7 @@ _STRAIGHT = 1e-6
 
 
 class Restrictor(ABC):
-    """What stands between a supply and a recess."""
+    """Resistance between a supply and a recess."""
 
     kind: ClassVar[str]
 

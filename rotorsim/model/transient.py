@@ -15,7 +15,7 @@ Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
 
 
 class TransientStart(StrEnum):
-    """What the solids' temperatures are at the beginning."""
+    """Temperatures of the solids at the beginning."""
 
     COLD = "cold"
     """`initial_temperature` throughout."""
@@ -25,7 +25,7 @@ class TransientStart(StrEnum):
 
 @dataclass(frozen=True)
 class SolidMaterial:
-    """What a solid stores.
+    """Heat capacity and conductivity of a solid.
 
     density : [kg/m3]
     specific_heat : [J/(kg K)]
@@ -57,7 +57,7 @@ class ShaftMaterial(SolidMaterial):
 
 @dataclass(frozen=True)
 class TransientEvent:
-    """What changes at one moment; what is left out stays as it is.
+    """Changes at one moment; what is left out stays as it is.
 
     at : [s]
     over : Time that the change takes, linearly [s]; 0: a step.

@@ -283,7 +283,7 @@ class _Log:
         self.done = {int(row.split(",", 1)[0]) for row in self._rows}
 
     def _kept(self) -> list[str]:
-        """Whole rows that are there already."""
+        """Return whole rows that are there already."""
         if is_missing(self.path):
             return []
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True)

@@ -42,7 +42,7 @@ class HotSpotStudy:
 
     @property
     def stable(self) -> bool:
-        """Whether the temperatures settle at every speed."""
+        """Return whether the temperatures settle at every speed."""
         return bool(np.nanmax(self.loop.growth_rate) < 0.0)
 
     @property

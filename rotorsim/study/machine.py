@@ -101,7 +101,7 @@ class MachineResult:
 
     @property
     def converged(self) -> bool:
-        """Whether every film and every static equilibrium did."""
+        """Return whether every film and every static equilibrium did."""
         points = [point for support in self.supports for point in support.points]
         return all(p.converged for p in points) and all(one.converged for one in self.statics)
 
@@ -455,7 +455,7 @@ class MachineAnalysis:
     def _determinate(
         self,
     ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
-        """Two supports: their loads follow from statics, then each film is a sweep of its own."""
+        """Find two supports' loads from statics, then sweep each film on its own."""
         raised, loads = self._elevations(), self.determinate_loads()
         points: dict[str, tuple[OperatingPoint, ...]] = {}
         films = [
@@ -502,7 +502,7 @@ class MachineAnalysis:
     def _indeterminate(
         self, loads: Array
     ) -> tuple[Array, dict[str, tuple[OperatingPoint, ...]], list[StaticEquilibrium]]:
-        """More supports: rotor and films together, at one speed after the other."""
+        """Solve rotor and films of more than two supports together, one speed after the other."""
         names, raised = self.description.support_names, self._elevations()
         films: dict[int, _Film] = {}
         for i, name in enumerate(names):

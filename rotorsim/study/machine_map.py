@@ -221,7 +221,7 @@ class _Job:
 
     @property
     def speed_axis(self) -> int | None:
-        """Which axis is the speed."""
+        """Number of the axis that is the speed."""
         kinds = [one.kind for one in self.axes]
         return kinds.index("speed") if "speed" in kinds else None
 

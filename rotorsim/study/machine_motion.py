@@ -657,7 +657,7 @@ class _Builder:
         return rest
 
     def _hung(self, system: MotionSystem, guess: Array) -> None:
-        """Guess of the journals' places: each film under its own load."""
+        """Return a guess of the journals' places: each film under its own load."""
         assert self.reactions is not None
         names = self.machine.support_names
         for link in system.links:

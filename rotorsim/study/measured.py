@@ -53,7 +53,7 @@ class Measured:
 
 @dataclass(frozen=True, eq=False)
 class Deviation:
-    """What a computed curve is off from measured points within its speeds.
+    """Deviation of a computed curve from measured points within its speeds.
 
     points : How many those are.
     mean, largest : Computed less measured, the mean and that of the largest modulus (SI).

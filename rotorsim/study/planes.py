@@ -87,7 +87,7 @@ class Plane:
 
     @property
     def quantities(self) -> tuple[Quantity, Quantity]:
-        """How x and y are shown."""
+        """Quantities of x and y, as they are shown."""
         units = (self.dataset[n].attrs.get("units", "") for n in (self.x, self.y))
         first, second = map(quantity, self.names, units)
         return first, second
@@ -103,7 +103,7 @@ class Plane:
 
     @property
     def destabilised_by_heating(self) -> Booleans | None:
-        """Where only heating makes the rotor unstable, (n_x, n_y); None with one model."""
+        """True where only heating makes the rotor unstable, (n_x, n_y); None with one model."""
         if "destabilised_by_heating" not in self.dataset:
             return None
         found = self.dataset["destabilised_by_heating"].transpose(self.x, self.y)
@@ -306,7 +306,7 @@ def _masses_about(middle: float) -> Array:
 
 
 def _median_critical_mass(table: CoefficientTable) -> float:
-    """Of every curve at the highest speed [kg]."""
+    """Return the median critical mass of every curve at the highest speed [kg]."""
     from ..bearing.whirl import rigid_thresholds
 
     found = rigid_thresholds(

@@ -27,7 +27,7 @@ _STEP = 0.5
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What a parameter does to the mode that becomes unstable, all others held.
+    """Effect of a parameter on the mode that becomes unstable, all others held.
 
     support : Name of the bearing; of the place, for a destabilising stiffness.
     value : Nominal one (SI).
@@ -186,7 +186,7 @@ def _of_films(result: MachineResult, mode: _Mode, workers: int | None) -> list[S
 
 
 def _of_cross_stiffness(result: MachineResult, mode: _Mode) -> list[Sensitivity]:
-    """Of destabilising stiffness at the places that the file names, by what it anticipates."""
+    """Return the sensitivity to destabilising stiffness at the places that the file names."""
     rotor, found = result.machine.rotor, []
     for entry in result.description.lateral.destabilising_stiffness:
         node = node_at(rotor, entry.at)

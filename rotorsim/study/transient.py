@@ -61,7 +61,7 @@ class Transient:
 
     @property
     def converged(self) -> bool:
-        """Whether the film lasted to the end."""
+        """Return whether the film lasted to the end."""
         return self.points[-1].converged
 
     def values(self, name: str) -> Array:

@@ -133,7 +133,7 @@ class Scenario:
 
     @property
     def target(self) -> Target:
-        """What fixes the journal: an eccentricity ratio or a load."""
+        """Eccentricity ratio or load that fixes the journal."""
         return self.operating.target
 
     def __repr__(self) -> str:
