@@ -32,7 +32,7 @@ _GREAT_HEATING = 100.0
 
 
 @dataclass(frozen=True)
-class DrawingNumbers:
+class _DrawingNumbers:
     """Numbers of a drawing, as engineers compare bearings.
 
     diameter : [m]
@@ -50,7 +50,7 @@ class DrawingNumbers:
     weight_to_load: float | None
 
 
-def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbers:
+def drawing_numbers(case: Case, rotor_mass: float | None = None) -> _DrawingNumbers:
     """Return the numbers of a case's drawing.
 
     rotor_mass : Per bearing [kg].
@@ -69,7 +69,7 @@ def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbe
     """
     bearing = case.bearing
     load = (case.target.load or None) if isinstance(case.target, LoadTarget) else None
-    return DrawingNumbers(
+    return _DrawingNumbers(
         diameter=bearing.diameter,
         length_to_diameter=bearing.length / bearing.diameter,
         diametral_clearance=2.0 * bearing.radial_clearance,
@@ -133,7 +133,7 @@ def _warm_flow(numbers: DerivedNumbers) -> list[str]:
     ]  # fmt: skip
 
 
-def _size_warnings(numbers: DrawingNumbers) -> list[str]:
+def _size_warnings(numbers: _DrawingNumbers) -> list[str]:
     found = []
     low, high = _CLEARANCE_RATIO
     if not low <= numbers.clearance_ratio <= high:

@@ -34,7 +34,7 @@ class WhirlThreshold:
 
 
 @dataclass(frozen=True)
-class WhirlThresholds:
+class _WhirlThresholds:
     """`WhirlThreshold` for a whole array of operating points; NaN where there is no threshold.
 
     `stability` holds the values of `Stability`, and an empty string where a coefficient is NaN.
@@ -131,7 +131,7 @@ def rigid_thresholds(
     *,
     load: ArrayLike | None = None,
     radial_clearance: ArrayLike | None = None,
-) -> WhirlThresholds:
+) -> _WhirlThresholds:
     """Return the critical mass and whirl frequency of a rigid rotor over whole arrays.
 
     stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
@@ -175,7 +175,7 @@ def rigid_thresholds(
         )
         dimensionless = mass * scale
     shape = np.broadcast_shapes(np.shape(mass), np.shape(ratio), np.shape(dimensionless))
-    return WhirlThresholds(
+    return _WhirlThresholds(
         stability=np.broadcast_to(verdict, shape),
         critical_mass=np.broadcast_to(mass, shape),
         whirl_frequency=np.broadcast_to(whirl, shape),
@@ -293,18 +293,6 @@ class FrequencyScan:
         film = np.concatenate([self.curve(_RATIOS[:1]), film])
         phase = np.unwrap(np.angle(np.linalg.det(film)))
         return round((2.0 * np.pi - (phase[-1] - phase[0])) / np.pi)
-
-    def least_damped(self, mass: float, count: int = 4) -> Array:
-        """Return frequencies [rad/s] near which det(A - M nu^2) is smallest.
-
-        First guesses of modes.
-        """
-        frequency = self.speed * _FINE
-        matrices = self.curve(_FINE) - mass * frequency[:, None, None] ** 2 * np.eye(2)
-        values = np.linalg.svd(matrices, compute_uv=False)
-        off = values[:, 1] / values[:, 0]
-        inner = np.flatnonzero((off[1:-1] < off[:-2]) & (off[1:-1] < off[2:])) + 1
-        return frequency[inner[np.argsort(off[inner])][:count]]
 
     def _crossings(self) -> list[tuple[float, float]]:
         """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed."""

@@ -249,7 +249,7 @@ def _report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     return INCOMPLETE if bad else DONE
 
 
-MeasuredOption = Annotated[
+_MeasuredOption = Annotated[
     Path | None,
     option("--measured", "FILE", "CSV of measured points, drawn over the curves.", "none"),
 ]
@@ -259,7 +259,7 @@ def run(
     output: Output,
     scenario: ScenarioArgument,
     folder: OutputFolder = Path(),
-    measured: MeasuredOption = None,
+    measured: _MeasuredOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:
@@ -337,7 +337,7 @@ def report(
     pdf: Annotated[
         bool, typer.Option("--pdf", help="Print it as PDF too (needs Chromium, Chrome or Edge).")
     ] = False,
-    measured: MeasuredOption = None,
+    measured: _MeasuredOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:

@@ -255,7 +255,7 @@ class LinePivot(_ContactPivot):
         return self.compliance / (math.pi * self.length) * logarithm
 
 
-PIVOTS: dict[str, type[Pivot]] = {
+_PIVOTS: dict[str, type[Pivot]] = {
     kind.kind: kind for kind in (RigidPivot, SpringPivot, LinePivot, SpherePivot, SocketPivot)
 }
 """Every kind of pivot, by its name in a file."""
@@ -270,7 +270,7 @@ PivotOffset = Annotated[
 PadPreload = Annotated[
     float, Number(above=-1.0, below=1.0, hint="1 - assembled over machined clearance")
 ]
-PadPivot = Annotated[Pivot, Made(PIVOTS)]
+PadPivot = Annotated[Pivot, Made(_PIVOTS)]
 Density = Annotated[float, Quantity("density", "7850 kg/m^3")]
 PadMass = Annotated[float, Quantity("mass", "2 kg", "not_negative")]
 Inertia = Annotated[float, Quantity("moment of inertia", "0.002 kg*m^2", "not_negative")]

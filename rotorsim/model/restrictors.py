@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 
 from .entries import Made, Number, Quantity, check
 
-Bore = Annotated[float, Quantity("length", "0.8 mm")]
+_Bore = Annotated[float, Quantity("length", "0.8 mm")]
 _STRAIGHT = 1e-6
 """Pressure drop, relative to the supply pressure, below which an orifice's law is straightened."""
 
@@ -38,7 +38,7 @@ class Capillary(Restrictor):
     """
 
     kind: ClassVar[str] = "capillary"
-    diameter: Bore
+    diameter: _Bore
     length: Annotated[float, Quantity("length", "50 mm")]
 
     def __post_init__(self) -> None:
@@ -62,7 +62,7 @@ class Orifice(Restrictor):
     """
 
     kind: ClassVar[str] = "orifice"
-    diameter: Bore
+    diameter: _Bore
     discharge_coefficient: Annotated[float, Number(above=0.0, most=1.0)] = 0.6
 
     def __post_init__(self) -> None:

@@ -11,7 +11,7 @@ from .entries import Clearance, Duration, Instant, Key, Length, Quantity, Speed,
 from .pads import STEEL_DENSITY
 
 _MAX_EVENTS = 100
-Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
+_Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
 
 
 class TransientStart(StrEnum):
@@ -70,7 +70,7 @@ class TransientEvent:
     at: Instant = 0.0
     over: Instant = 0.0
     speed: Speed | None = None
-    load: Load | None = None
+    load: _Load | None = None
     supply_temperature: Temperature | None = None
     ambient_temperature: Temperature | None = None
     supply: bool | None = None

@@ -375,28 +375,6 @@ def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Arr
 
 
 @on_one_blas_thread
-def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: int) -> float:
-    """Return the largest relative change of natural frequencies when every element is halved.
-
-    places : Nodes with a spring to ground each [m].
-    stiffness : Of each spring [N/m].
-    count : Number of frequencies looked at, the lowest ones, in one plane, without rotation.
-    """
-    from scipy.linalg import eigh
-
-    values = []
-    for refinement in (1, 2):
-        rotor = beam_rotor(beam, places, refinement)
-        springs = np.array(rotor.stiffness)
-        for node in rotor.bearing_nodes:
-            x = int(rotor.first_unknown[node])
-            springs[[x, x + 1], [x, x + 1]] += stiffness
-        squares = eigh(springs, rotor.mass, eigvals_only=True)[: 2 * count]
-        values.append(np.sqrt(np.maximum(squares, 0.0)))
-    floor = 1e-6 * float(values[1][-1])
-    return float(np.max(np.abs(values[0] - values[1]) / np.maximum(values[1], floor)))
-
-
 def buckling_load(beam: Beam, supports: Sequence[float]) -> float:
     """Return the force [N] at which the shaft buckles between supports that do not yield.
 

@@ -52,7 +52,7 @@ _HEADER = "# rotorsim study"
 
 
 @dataclass(frozen=True)
-class Variable:
+class _Variable:
     """An entry that varies, its ends in SI.
 
     unit : SI unit; empty for pure numbers.
@@ -85,7 +85,7 @@ class Study:
     """
 
     title: str
-    variables: tuple[Variable, ...]
+    variables: tuple[_Variable, ...]
     thermal_model: str
     speeds: tuple[float, ...]
     designs: pd.DataFrame
@@ -174,7 +174,7 @@ def run_study(
     )  # fmt: skip
 
 
-def _variable(base: Scenario, given: Range) -> Variable:
+def _variable(base: Scenario, given: Range) -> _Variable:
     """Check both ends of a range by the scenario they make."""
     key = f"study.vary.{given.name}"
     try:
@@ -189,7 +189,7 @@ def _variable(base: Scenario, given: Range) -> Variable:
         said = "must ascend" if not low < high else "must begin above 0 for logarithmic spacing"
         raise InputError(said, key=key, value=f"{given.low}, {given.high}")
     unit = "" if kind is None else QUANTITIES[kind].unit
-    return Variable(name, low, high, unit, given.logarithmic)
+    return _Variable(name, low, high, unit, given.logarithmic)
 
 
 def _number(end: Any, kind: str | None) -> float:
@@ -201,7 +201,7 @@ def _number(end: Any, kind: str | None) -> float:
 
 
 def _batches(
-    variables: Sequence[Variable], seed: int, count: int, there: frozenset[int]
+    variables: Sequence[_Variable], seed: int, count: int, there: frozenset[int]
 ) -> Iterator[list[tuple[int, tuple[float, ...]]]]:
     """Return numbers of the designs that are not `there` and their values, a few at a time."""
     from scipy.stats import qmc
@@ -270,7 +270,7 @@ class _Log:
     """The file of a study: a line that says what it is, column names, one row for each design."""
 
     def __init__(
-        self, path: Path, design: _Design, variables: Sequence[Variable], seed: int
+        self, path: Path, design: _Design, variables: Sequence[_Variable], seed: int
     ) -> None:
         digest = hashlib.sha256(repr((design, variables, seed)).encode()).hexdigest()[:24]
         units = {one.name: one.unit for one in variables if one.unit}

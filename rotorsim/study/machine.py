@@ -167,7 +167,7 @@ class MachineResult:
 
 
 @dataclass(frozen=True, eq=False)
-class HeatedMode:
+class _HeatedMode:
     """A mode that heating makes unstable at the highest speed.
 
     frequency : Damped, with heating [rad/s].
@@ -179,7 +179,7 @@ class HeatedMode:
     growth_rate: float
 
 
-def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[HeatedMode]:
+def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[_HeatedMode]:
     """Return modes that grow with heating at the highest common speed and do not without.
 
     A mode's isothermal counterpart is the one of nearest shape (MAC) and frequency.
@@ -202,7 +202,7 @@ def destabilised_by_heating(cold: MachineResult, hot: MachineResult) -> list[Hea
         before = float(one.growth_rate[0, twin])
         if before <= 0.0 or one.undamped[0, twin]:
             after = float(other.growth_rate[0, k])
-            found.append(HeatedMode(float(other.damped_frequency[0, k]), before, after))
+            found.append(_HeatedMode(float(other.damped_frequency[0, k]), before, after))
     return found
 
 
@@ -356,9 +356,7 @@ class MachineAnalysis:
         self.progress: Progress = progress
         self.description: MachineFile = variant.machine
         self.speeds: Array = np.array(speeds)
-        supports, seals = self.description.support, self.description.seal
-        self.nodes: list[int] = [node_at(rotor, entry.at) for entry in supports]
-        self.seal_nodes: list[int] = [node_at(rotor, entry.at) for entry in seals]
+        self.nodes: list[int] = [node_at(rotor, entry.at) for entry in self.description.support]
 
     def result(self) -> MachineResult:
         """Return statics, films, supports."""
@@ -384,30 +382,16 @@ class MachineAnalysis:
             )
         ]
         mounts += [
-            Mount(node, seal_support(entry, self.description, name), name)
-            for node, entry, name in zip(
-                self.seal_nodes, self.description.seal, self.description.seal_names, strict=True
-            )
-        ]
-        mounts += [
-            Mount(node_at(self.rotor, at), cross_stiffness(q), f"Q at {at * 1e3:g} mm")
-            for at, q in self.variant.cross_stiffness.items()
+            *seal_mounts(self.description, self.rotor),
+            *(
+                Mount(node_at(self.rotor, at), cross_stiffness(q), f"Q at {at * 1e3:g} mm")
+                for at, q in self.variant.cross_stiffness.items()
+            ),
         ]
         return Machine(self.rotor, mounts)
 
     def _force(self, speed: float) -> Array:
-        """Return the static forces on the rotor's unknowns at a speed [N]."""
-        force = np.zeros(self.rotor.size)
-        if not self.description.operating.vertical:
-            force += weight(self.rotor)
-        for entry in self.description.load:
-            rows = np.array(entry.force)
-            node = node_at(self.rotor, entry.at)
-            for axis in (0, 1):
-                force[self.rotor.planes[node][axis]] += np.interp(
-                    speed, rows[:, 0], rows[:, axis + 1]
-                )
-        return force
+        return static_force(self.description, self.rotor, speed)
 
     def _loads_and_points(
         self,
@@ -721,13 +705,33 @@ def film_support(speeds: Array, state: SupportState, full: bool = True) -> Suppo
     return TableSupport(CoefficientInterpolator.from_columns(speeds, converged, columns))
 
 
-def seal_support(entry: SealEntry, description: MachineFile, name: str) -> Support:
-    """Make the support of a seal from its entry."""
-    if entry.coefficients is not None:
-        return TableSupport(description.tables[name].interpolator(), carries_load=False)
-    return ConstantSupport(
-        _matrix(entry.stiffness), _matrix(entry.damping), _matrix(entry.mass), carries_load=False
-    )
+def seal_mounts(description: MachineFile, rotor: Rotor) -> list[Mount]:
+    """Return the seals at their nodes."""
+
+    def support(entry: SealEntry, name: str) -> Support:
+        if entry.coefficients is not None:
+            return TableSupport(description.tables[name].interpolator(), carries_load=False)
+        k, c, m = (_matrix(part) for part in (entry.stiffness, entry.damping, entry.mass))
+        return ConstantSupport(k, c, m, carries_load=False)
+
+    return [
+        Mount(node_at(rotor, entry.at), support(entry, name), name)
+        for entry, name in zip(description.seal, description.seal_names, strict=True)
+    ]
+
+
+def static_force(
+    description: MachineFile, rotor: Rotor, speed: float, gravity: bool = True
+) -> Array:
+    """Return weight and static loads on the rotor's unknowns at a speed [N]."""
+    force = np.zeros(rotor.size)
+    if gravity and not description.operating.vertical:
+        force += weight(rotor)
+    for entry in description.load:
+        rows = np.array(entry.force)
+        for axis, place in enumerate(rotor.planes[node_at(rotor, entry.at)]):
+            force[place] += np.interp(speed, rows[:, 0], rows[:, axis + 1])
+    return force
 
 
 def _matrix(given: Matrix | None) -> Array:

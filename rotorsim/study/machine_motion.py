@@ -16,7 +16,7 @@ from ..files.machine import MachineFile
 from ..film.geometry import rotation
 from ..machine.machine import Machine, Mount
 from ..machine.peaks import node_at
-from ..machine.statics import reactions_by_statics, weight
+from ..machine.statics import reactions_by_statics
 from ..model import LoadTarget
 from ..model.machine_orbit import MachineForce, MachineOrbit
 from ..model.orbit import SpeedRamp
@@ -44,7 +44,7 @@ from ..orbit.orbit import Orbit, OrbitStatus
 from ..orbit.problem import SpeedSchedule
 from ..orbit.system import GROUND, Harmonic, LinearBlock, Link, MotionSystem, derivatives
 from ..rotor.reduction import reduce_rotor
-from .machine import fixed_support, seal_support
+from .machine import fixed_support, seal_mounts, static_force
 from .orbits import FilmFrame
 from .rings import damper_force, ring_films, ring_state
 
@@ -204,14 +204,7 @@ class _Builder:
         return None
 
     def _static_force(self, speed: float) -> Array:
-        force = np.zeros(self.rotor.size)
-        if self.settings.gravity and not self.machine.operating.vertical:
-            force += weight(self.rotor)
-        for entry in self.machine.load:
-            rows = np.array(entry.force)
-            for axis, place in enumerate(self.rotor.planes[node_at(self.rotor, entry.at)]):
-                force[place] += np.interp(speed, rows[:, 0], rows[:, axis + 1])
-        return force
+        return static_force(self.machine, self.rotor, speed, self.settings.gravity)
 
     # supports ---------------------------------------------------------------------------------
 
@@ -443,7 +436,7 @@ class _Builder:
             names=(*rotor.unknowns, *linear.unknowns[size:], *((n, u) for n, u, _ in self.own)),
         )  # fmt: skip
         rest = self._rest(system)
-        seals = self._seal_mounts()
+        seals = seal_mounts(self.machine, rotor)
         if seals:
             with_seals = Machine(rotor, [*linear.mounts, *seals])
             at = {m.name: rest[place[p]] for m, p in zip(
@@ -540,12 +533,6 @@ class _Builder:
 
     def _own_names(self) -> list[tuple[str, str]]:
         return [*self.linear_names, *((name, unknown) for name, unknown, _ in self.own)]
-
-    def _seal_mounts(self) -> list[Mount]:
-        return [
-            Mount(node_at(self.rotor, entry.at), seal_support(entry, self.machine, name), name)
-            for entry, name in zip(self.machine.seal, self.machine.seal_names, strict=True)
-        ]
 
     def _block(
         self, linear: Machine, place: Indices, seals: dict[str, Array]
@@ -853,7 +840,7 @@ def largest_disturbance(
     settings = orbit or machine.orbit or MachineOrbit()
     problem = motion_problem(machine, replace(settings, unbalance=False, revolutions=revolutions))
     unit = np.asarray(direction, dtype=float) / float(np.hypot(*direction))
-    shape = problem_shift(problem, unit)
+    shape = _problem_shift(problem, unit)
     films = [link for link in problem.system.links if link.film]
     low, high = 0.0, 0.9 * min(link.force.radial_clearance for link in films)
 
@@ -874,7 +861,7 @@ def largest_disturbance(
     return low, high
 
 
-def problem_shift(problem: MotionProblem, along: Array) -> Array:
+def _problem_shift(problem: MotionProblem, along: Array) -> Array:
     """Return unknowns (n,) of a unit shift of the journals in their films."""
     shape = np.zeros(problem.system.size)
     for link in problem.system.links:

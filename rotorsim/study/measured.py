@@ -52,7 +52,7 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class Deviation:
+class _Deviation:
     """Deviation of a computed curve from measured points within its speeds.
 
     points : How many those are.
@@ -149,7 +149,7 @@ def curves(table: CoefficientTable, name: str) -> Iterator[tuple[str, float, Arr
             yield str(model), float(clearance), np.asarray(part.values, dtype=float)
 
 
-def deviations(table: CoefficientTable, measured: Sequence[Measured]) -> list[Deviation]:
+def deviations(table: CoefficientTable, measured: Sequence[Measured]) -> list[_Deviation]:
     """Compare measured points with every curve of the table, linear between its speeds."""
     found = []
     for one in measured:
@@ -164,12 +164,12 @@ def deviations(table: CoefficientTable, measured: Sequence[Measured]) -> list[De
             off = np.interp(one.speed[within], speeds, values[known]) - one.value[within]
             worst = float(off[np.argmax(np.abs(off))])
             found.append(
-                Deviation(one.name, model, clearance, int(within.sum()), float(off.mean()), worst)
+                _Deviation(one.name, model, clearance, int(within.sum()), float(off.mean()), worst)
             )
     return found
 
 
-def deviations_document(found: list[Deviation]) -> list[dict[str, Any]]:
+def deviations_document(found: list[_Deviation]) -> list[dict[str, Any]]:
     """Return deviations as plain data (SI)."""
     return [vars(one) for one in found]
 
@@ -180,7 +180,7 @@ def shown_as(name: str) -> Quantity:
     return quantity(name, "" if kind is None else QUANTITIES[kind].unit)
 
 
-def deviation_rows(found: Sequence[Deviation]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+def deviation_rows(found: Sequence[_Deviation]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return head and rows of a table of deviations, in the units shown."""
     head = ("result", "curve", "points", "mean", "largest", "")
     rows = []
