@@ -19,7 +19,8 @@ from ..machine import response as to_unbalance
 from ..machine.branches import Modes
 from ..machine.machine import Machine
 from ..machine.response import UnbalanceResponse
-from .machine import MachineResult, analyse_machine
+from .machine import MachineResult
+from .machine_analysis import analyse_machine
 
 if TYPE_CHECKING:
     import control

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Array, ComplexArray
 from ..errors import InputError
+from ..files.parameters import Variant
 from ..files.scenario import Scenario
 from ..machine.machine import Machine
 from ..machine.modes import machine_spectrum
@@ -16,7 +17,9 @@ from ..machine.peaks import node_at
 from ..machine.support import Pedestal, Support, cross_stiffness
 from ..model import Case
 from ..threads import on_one_blas_thread
-from .machine import MachineAnalysis, MachineResult, SupportState, Variant, film_support
+from .machine import MachineResult
+from .machine_analysis import MachineAnalysis
+from .machine_supports import SupportState, film_support
 from .sweep import sweep_points
 
 _SHARE, _KELVIN, _PRELOAD = 0.1, 5.0, 0.1
@@ -137,7 +140,7 @@ def _of_films(result: MachineResult, mode: _Mode, workers: int | None) -> list[S
             scenario: Scenario = scenario,
         ) -> Case:
             changed = scenario.replace(**changes) if changes else scenario
-            return analysis.case(i, changed, share * load)
+            return analysis.case(i, share * load, changed)
 
         nominal = case({})
         bearing = nominal.bearing
