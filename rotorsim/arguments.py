@@ -62,10 +62,7 @@ def finite_number(value: Any, key: str, unit: str = "") -> float:
 
 
 def above_zero(prefix: str, **values: float) -> None:
-    """Refuse values that are not finite and above zero; their keys are `prefix` and name.
-
-    Raises InputError.
-    """
+    """Refuse values that are not finite and above zero; their keys are `prefix` and name."""
     for name, value in values.items():
         if not (math.isfinite(value) and value > 0.0):
             raise InputError("must be above 0", key=f"{prefix}.{name}", value=value)

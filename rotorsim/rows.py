@@ -78,10 +78,7 @@ def shown_unit(unit: str) -> tuple[str, float, float]:
 
 
 def axis_title(label: str, unit: str) -> str:
-    """Return title of a figure's axis.
-
-    ``pressure [psi]`` where the unit given is MPa and US is shown.
-    """
+    """Return the title of a figure's axis in the unit that is shown: ``pressure [psi]``."""
     return f"{label} [{shown_unit(unit)[0]}]"
 
 
@@ -92,10 +89,7 @@ def in_shown_unit(value: Any, unit: str) -> Any:
 
 
 def shown(value: float | None, unit: str, digits: int = 4) -> str:
-    """Return short text of a value in `unit`, in the unit that is shown in its place.
-
-    See `heads`.
-    """
+    """Return short text of a value in `unit`, in the unit shown in its place; see `heads`."""
     return number(None if value is None else in_shown_unit(value, unit), digits)
 
 

@@ -183,10 +183,7 @@ def _lines(
 
 
 def _separator(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> str:
-    """Return separator of the first line that it cuts into the columns of a table.
-
-    Empty where only blanks do, else the comma.
-    """
+    """Return what separates the cells of the first line that makes a header; empty: blanks."""
     for line in lines[:_TITLE_LINES]:
         if line.strip() and not line.lstrip().startswith("#"):
             for separator in _SEPARATORS:
@@ -197,10 +194,7 @@ def _separator(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) ->
 
 
 def _from_blanks(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> list[str]:
-    """Put commas between columns of blanks, from the header on.
-
-    Header and units may stand in comments.
-    """
+    """Put commas between columns of blanks, from the header on, which may be a comment."""
     place = next(k for k, line in enumerate(lines) if header(line.lstrip("# ").split()))
     above = [""] * place
     return above + [

@@ -112,10 +112,7 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
 
 
 def _warm_flow(numbers: DerivedNumbers) -> list[str]:
-    """Return limits that only the estimated warm film exceeds.
-
-    The cold one has its own warnings.
-    """
+    """Return limits that only the estimated warm film exceeds."""
     at = f"with the estimated warm viscosity ({numbers.warm_temperature - ZERO_CELSIUS:.0f} °C)"
     return [
         f"{name} number {warm:.4g} {at} is above {limit:g}: the film may be {what} when hot"

@@ -96,10 +96,7 @@ class FilmDynamics:
         return self.mass is not None
 
     def stated_coefficients(self) -> tuple[Array, Array, float | None]:
-        """Return K, C of the journal and the whirl frequency ratio at which they hold.
-
-        None: at any.
-        """
+        """Return K, C of the journal and the whirl frequency ratio at which they hold."""
         if self.has_pads:
             return *self.coefficients(1.0), 1.0
         if self.stored_oil is None:
@@ -176,10 +173,7 @@ class FilmDynamics:
         )
 
     def _crossings(self) -> list[tuple[float, float]]:
-        """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed.
-
-        There m nu^2 is a real eigenvalue of the reduced A(i nu).
-        """
+        """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed."""
         from scipy.optimize import brentq
 
         found: list[tuple[float, float]] = []

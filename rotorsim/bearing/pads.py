@@ -100,10 +100,7 @@ def supply_warnings(
 def lacking_pads(
     bearing: Bearing, cavitation: Cavitation, demand: Sequence[float]
 ) -> tuple[int, ...]:
-    """Return pads that get less oil than their films' `demand` [m3/s].
-
-    In a film that makes the rest.
-    """
+    """Return pads that get less oil than their films' `demand` [m3/s], in a film that splits it."""
     flow = bearing.supply_flow
     if flow is None or bearing.feed is Feed.FLOODED or cavitation is Cavitation.JFO:
         return ()

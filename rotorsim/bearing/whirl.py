@@ -108,10 +108,7 @@ def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> _RouthCoeffi
 
 
 def _verdicts(routh: _RouthCoefficients) -> NDArray[np.str_]:
-    """Return `Stability` of every point.
-
-    With K_e > 0 only the signs of det C and det(K - K_e I) count.
-    """
+    """Return `Stability` of every point; with K_e > 0 two determinants' signs decide."""
     det_c, shifted = np.broadcast_arrays(routh.det_damping, routh.det_shifted)
     possible = routh.may_be_stable
     verdict = np.full(np.shape(possible), str(Stability.ALWAYS_UNSTABLE), dtype="U18")

@@ -299,10 +299,7 @@ class MachineFile:
                     place_named(self, place, f"control.{word}[{i}]")
 
     def with_parts(self, **parts: Any) -> MachineFile:
-        """Return machine with some of its parts replaced.
-
-        Bearings and tables are not read again.
-        """
+        """Return the machine with some parts replaced; bearings and tables are not read again."""
         bearings = parts.pop("bearings", self.bearings)
         other = replace(self, **parts)
         other.__dict__.update(bearings=bearings, tables=self.tables)

@@ -125,10 +125,7 @@ class Parameter:
         return value
 
     def values(self, given: object, key: str) -> list[float]:
-        """Return ascending values [SI]: a list of texts, ``"a, b, c"``, or ``"start : stop .
-
-        Count"``.
-        """
+        """Return ascending values [SI]: of texts, ``"a, b"``, or ``"start : stop : count"``."""
         if isinstance(given, Mapping):
             given = " : ".join(str(given.get(part, "")) for part in ("start", "stop", "count"))
         if not isinstance(given, str):

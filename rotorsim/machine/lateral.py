@@ -216,10 +216,7 @@ def lateral_checks(
 
 
 def _largest(speed: Array, values: Array, between: tuple[float, float]) -> float | None:
-    """Return largest known value between two speeds, their ends interpolated.
-
-    None: none is known.
-    """
+    """Return the largest known value between two speeds, ends interpolated; None: none known."""
     inside = (speed >= between[0]) & (speed <= between[1])
     known = np.isfinite(values)
     found = values[inside & known]

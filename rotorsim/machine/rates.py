@@ -173,10 +173,7 @@ def _conjugate_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float,
 ) -> float:  # fmt: skip
-    """Return largest real part where the factors are M + t -+ i (l1 s + l0).
-
-    Each other's conjugates.
-    """
+    """Return the largest real part where M + t -+ i (l1 s + l0) are conjugate factors."""
     r1, r2 = _quadratic(complex(alpha, -l1), complex(beta + t, -l0))
     x1, y1, d1 = _polish(r1.real, r1.imag, alpha, beta, n2, n1, n0)
     x2, y2, d2 = _polish(r2.real, r2.imag, alpha, beta, n2, n1, n0)
@@ -191,10 +188,7 @@ def _conjugate_factors(
 def _pair(
     p: float, q: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float, float]:
-    """Return polished roots of one real factor.
-
-    Larger real part, sum, product, worst relative error.
-    """
+    """Return of one real factor's roots the larger real part, sum, product, relative error."""
     half = 0.5 * p
     discriminant = half * half - q
     if discriminant < 0.0:

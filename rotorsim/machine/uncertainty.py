@@ -118,10 +118,7 @@ class Propagation:
         return self._additive_fit(output)[0]
 
     def explained_variance(self, output: str) -> float:
-        """Return adjusted R^2 of the regression behind `first_order_index`.
-
-        NaN where there is none.
-        """
+        """Return adjusted R^2 of the fit behind `first_order_index`; NaN where there is none."""
         return self._additive_fit(output)[1]
 
     def _additive_fit(self, output: str) -> tuple[dict[str, float], float]:

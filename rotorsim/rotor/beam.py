@@ -218,10 +218,7 @@ class Beam:
 
 
 def _shear_coefficient(radius_ratio: float | Array, poisson_ratio: float) -> float | Array:
-    """Return Cowper's shear coefficient of a (hollow) circle.
-
-    `radius_ratio` is inner over outer.
-    """
+    """Return Cowper's shear coefficient of a circle; `radius_ratio` is inner over outer."""
     m2 = np.square(radius_ratio)
     first = (1.0 + m2) ** 2
     return (
@@ -443,10 +440,7 @@ def _merged(places: Sequence[float], length: float) -> list[float]:
 
 
 def with_unbalance(rotor: Rotor, planes: Sequence[tuple[float, float, float]]) -> Rotor:
-    """Return rotor with unbalances at places.
-
-    (position [m], mass times radius [kg m], phase [rad]).
-    """
+    """Return the rotor with unbalances (position [m], mass times radius [kg m], phase [rad])."""
     positions = np.array([node.position for node in rotor.nodes])
     unbalance = np.array(rotor.unbalance)
     for at, amount, phase in planes:

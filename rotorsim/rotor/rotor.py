@@ -101,10 +101,7 @@ class Rotor:
         ) and all(np.array_equal(getattr(self, n), getattr(other, n)) for n in arrays)  # fmt: skip
 
     def _label(self, name: str) -> str:
-        """Return how a message calls a matrix.
-
-        By the file's name for it where it is from a file.
-        """
+        """Return how a message calls a matrix: as its file does, where it has one."""
         in_file = {
             "mass": "M", "damping": "D or C", "gyroscopic": "G", "stiffness": "K",
             "circulatory": "H",

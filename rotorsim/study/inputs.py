@@ -169,10 +169,7 @@ def _oil(scenario: Scenario) -> _Rows:
 
 
 def _grade(scenario: Scenario) -> _Rows:
-    """Return the ISO VG grade as the scenario's text has it.
-
-    The law that follows from it keeps none.
-    """
+    """Return the ISO VG grade of the scenario's text; the law that follows keeps none."""
     given = tomllib.loads(scenario.text).get("lubricant", {})
     if "iso_vg" not in given:
         return []

@@ -127,10 +127,7 @@ def solve_films_together(
 
 
 def thermal_models(description: MachineFile) -> list[str]:
-    """Return thermal models of a machine's bearings, ``isothermal`` first.
-
-    ``given`` without films.
-    """
+    """Return thermal models of the bearings, ``isothermal`` first; ``given`` without films."""
     names = {str(model) for one in description.bearings.values() for model in one.thermal_models}
     return [str(model) for model in ThermalModel if str(model) in names] or [_GIVEN]
 
@@ -219,10 +216,7 @@ class MachineAnalysis:
         return loads
 
     def film_cases(self) -> list[Case] | None:
-        """Return films that `result` will ask its sweep for.
-
-        None where they depend on speed or films.
-        """
+        """Return films that `result` asks its sweep for; None where they depend on each other."""
         if not self.films:
             return []
         if len(self.nodes) != 2:
@@ -254,10 +248,7 @@ class MachineAnalysis:
         return loads, points, statics
 
     def _journal(self, i: int, k: int, loads: Array, points: _Points) -> Array:
-        """Return displacement of a journal in its housing at speed k [m].
-
-        0 where it is not known.
-        """
+        """Return the journal's displacement in its housing at speed k [m]; 0 where not known."""
         film = points.get(self.description.support_names[i])
         if film is not None:
             return _journal_of(film[k], loads[k, i]) if film[k].converged else np.zeros(2)

@@ -376,10 +376,7 @@ class _Films:
 def _matrices(
     speeds: Array, states: Sequence[SupportState], wanted: Array
 ) -> tuple[tuple[str, ...], int, Array]:
-    """Return k, C, M of a film's states at wanted speeds, (n_state, n_speed, 3, m, m).
-
-    NaN: not known.
-    """
+    """Return a film's K, C, M (n_state, n_speed, 3, m, m) at wanted speeds; NaN: not known."""
     supports = [film_support(speeds, state) for state in states]
     if len({one.unknowns for one in supports}) > 1:
         # Pads that carry load here and none there: all of them reduced at the shaft's frequency.

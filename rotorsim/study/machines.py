@@ -86,10 +86,7 @@ def unbalance_response(
     *,
     thermal_model: str | None = None,
 ) -> UnbalanceResponse:
-    """Return the steady response of a machine to its unbalance.
-
-    Parameters are those of `modes`.
-    """
+    """Return the steady response of a machine to its unbalance; parameters as for `modes`."""
     whole = assembled(machine, thermal_model)
     if speed is None and isinstance(machine, MachineFile) and not whole.speeds.size:
         speed = machine.operating.speeds

@@ -22,10 +22,7 @@ from .rings import ring_state
 def linear_block(
     parts: MotionParts, linear: Machine, place: Indices, seals: dict[str, Array]
 ) -> LinearBlock | None:
-    """Return linear supports about their static positions over speed.
-
-    Seals about where they rest.
-    """
+    """Return linear supports about their static positions over speed, `seals` about theirs."""
     loads = [node_at(parts.rotor, entry.at) for entry in parts.machine.load]
     wanted = {int(i) for at in linear.places for i in at}
     wanted |= {i for node in loads for i in parts.rotor.planes[node]}
@@ -75,10 +72,7 @@ def linear_block(
 def _statics(
     parts: MotionParts,
 ) -> Callable[[str, float], tuple[Array, Array]] | None:
-    """Return reaction (2,) and displacement of the rotor (size,) over speed.
-
-    Where they are known.
-    """
+    """Return reaction (2,) and displacement of the rotor (size,) over speed, where known."""
     if parts.result is None or not parts.result.statics:
         return None
     if not parts.settings.gravity:
