@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,12 +16,9 @@ from ..bearing.table import CoefficientTable
 from ..bearing.table_data import ATTRIBUTES, COEFFICIENTS, CONVENTIONS, SCALARS
 from ..errors import TableError
 from ..file_kinds import SUFFIXES, FileKind, is_missing, kind_of, sentence
+from ..rows import RPM
 from . import ross
-from .ross import RPM, Curve, curves
-
-if TYPE_CHECKING:
-    from ..bearing.table import CoefficientTable
-
+from .curves import Curve, curves
 
 _WIDTH = 16
 

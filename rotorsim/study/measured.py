@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arguments import file_path
 from ..arrays import Array
-from ..bearing import delimited
+from ..bearing import csv_cells
 from ..bearing.description import curve_title
 from ..bearing.table import CoefficientTable
 from ..errors import InputError, TableError
@@ -74,13 +74,13 @@ def read_measured(path: str | Path) -> tuple[Measured, ...]:
         number with the column's unit.
     """
     source = file_path(path)
-    lines, separator = delimited.cells(source, lambda names: "speed" in names, _OTHER_NAMES)
+    lines, separator = csv_cells.cells(source, lambda names: "speed" in names, _OTHER_NAMES)
     if len(lines) < 2:
         raise TableError(
             f"needs a header with speed and some of {', '.join(list(_KINDS)[1:13])}, and a row",
             source=source,
         )
-    heads = [delimited.named(cell, _OTHER_NAMES) for cell in lines[0][1]]
+    heads = [csv_cells.named(cell, _OTHER_NAMES) for cell in lines[0][1]]
     heads = [
         (name, unit or ("rpm" if cell.lower() == "rpm" else ""))
         for (name, unit), cell in zip(heads, lines[0][1], strict=True)
