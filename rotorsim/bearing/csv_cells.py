@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..errors import TableError
 from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
-from .table_data import COEFFICIENTS
+from .table_format import COEFFICIENTS
 
 _MAX_BYTES = 20_000_000
 MASSES = ("mxx", "mxy", "myx", "myy")

@@ -32,7 +32,8 @@ from ..status import SolveStatus
 from ..units import parse_unit
 from . import csv_cells
 from .csv_cells import LONGEST_NAME, MASSES, Line, named
-from .table_data import (
+from .table_data import build, without_standstill
+from .table_format import (
     ATTRIBUTES,
     COEFFICIENTS,
     CONSTANT,
@@ -43,8 +44,6 @@ from .table_data import (
     FULL_COEFFICIENTS,
     LARGEST,
     NOTES,
-    build,
-    without_standstill,
 )
 
 if TYPE_CHECKING:

@@ -14,7 +14,8 @@ from ..arguments import file_path
 from ..atomic import write_bytes
 from ..errors import TableError
 from ..file_kinds import HEAD, FileKind, is_missing, read_bytes, recognise, sentence
-from .table_data import TABLE_VERSION, scenario_digest
+from .table_data import scenario_digest
+from .table_format import TABLE_VERSION
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -16,7 +16,7 @@ from ..status import SolveStatus
 from . import delimited, netcdf
 from . import table_data as assembly
 from .interpolation import CoefficientInterpolator, Coefficients
-from .table_data import COEFFICIENTS
+from .table_format import COEFFICIENTS
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -13,7 +13,7 @@ import numpy as np
 from ..arguments import file_path
 from ..atomic import replacing, write_text
 from ..bearing.table import CoefficientTable
-from ..bearing.table_data import ATTRIBUTES, COEFFICIENTS, CONVENTIONS, SCALARS
+from ..bearing.table_format import ATTRIBUTES, COEFFICIENTS, CONVENTIONS, SCALARS
 from ..errors import TableError
 from ..file_kinds import SUFFIXES, FileKind, is_missing, kind_of, sentence
 from ..rows import RPM

@@ -24,7 +24,7 @@ from ..arguments import file_path
 from ..arrays import Array
 from ..atomic import write_text
 from ..bearing.table import CoefficientTable
-from ..bearing.table_data import COEFFICIENTS, LARGEST, SIGNS
+from ..bearing.table_format import COEFFICIENTS, LARGEST, SIGNS
 from ..errors import InputError, TableError
 from ..file_kinds import read_bytes
 from ..units import parse_quantity
@@ -284,14 +284,8 @@ def table_of(
     bearing: dict[str, Any], ross3: bool, load_direction: float, source: Path
 ) -> CoefficientTable:
     """Return the table of a bearing's entries."""
-    from ..bearing.table_data import (
-        CONSTANT,
-        CONSTANT_SPEEDS,
-        NOTES,
-        build,
-        check,
-        without_standstill,
-    )
+    from ..bearing.table_data import build, check, without_standstill
+    from ..bearing.table_format import CONSTANT, CONSTANT_SPEEDS, NOTES
 
     axis = speed_axis(bearing, source)
     notes = []

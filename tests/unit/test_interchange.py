@@ -16,7 +16,7 @@ import pytest
 
 from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.bearing.table import CoefficientTable
-from rotorsim.bearing.table_data import COEFFICIENTS
+from rotorsim.bearing.table_format import COEFFICIENTS
 from rotorsim.errors import InputError, TableError
 from rotorsim.files.formats import FORMATS, read_table, write_table
 from rotorsim.files.ross import _to_ross, from_ross
