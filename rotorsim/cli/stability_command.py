@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..arguments import ascending_values
 from ..errors import InputError
 from ..file_kinds import FileKind, kind_of, sentence
 from .film_commands import computed_table
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 
 
 _MAP, _TOLERANCES = "Map over two inputs", "Tolerances"
-_MOST_VALUES = 1000
 _SHORT = {"clearance": "radial_clearance", "applied_load": "load"}
 """Other names of inputs, to those of a scenario's ``[tolerances]``."""
 
@@ -618,29 +617,15 @@ def _read_values(
     """Return the ascending values [SI] of ``--x-values`` and ``--y-values``."""
     from ..units import parse_quantity
 
-    def value(word: str) -> float:
+    def value(word: object) -> float:
         if kind is not None:
             return parse_quantity(word, kind, key=key, example=example)
         try:
-            return float(word)
+            return float(str(word))
         except ValueError:
             raise InputError("must be plain numbers", key=key, value=word) from None
 
-    parts = [part.strip() for part in text.split(":")]
-    if len(parts) == 3:
-        if not parts[2].isascii() or not parts[2].isdigit() or not 2 <= int(parts[2]) <= 1000:
-            message = f"the count must be a whole number from 2 to {_MOST_VALUES}"
-            raise InputError(message, key=key, value=text)
-        first, last = (value(part) for part in parts[:2])
-        step = (last - first) / (int(parts[2]) - 1)
-        values = [first + i * step for i in range(int(parts[2]) - 1)] + [last]
-    elif len(parts) == 1:
-        values = [value(part.strip()) for part in text.split(",")]
-    else:
-        message = f'must be a list "{example}, ..." or "start : stop : count"'
-        raise InputError(message, key=key, value=text)
-    if len(values) > _MOST_VALUES or any(b <= a for a, b in pairwise(values)):
-        raise InputError(f"must ascend, at most {_MOST_VALUES} values", key=key, value=text)
+    values = ascending_values(text, value, key, example)
     if values[0] <= 0.0 and not any_sign:
         raise InputError("must be above 0", key=key, value=text)
     return values
