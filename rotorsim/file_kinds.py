@@ -1,4 +1,4 @@
-"""What a file is, by its first bytes and its name, which command takes it, and its contents.
+"""Kinds of files, by first bytes and name; the command that takes each, and its contents.
 
 Nothing here decides what can be read: the readers do, and ask here only for what to say of a file
 that is not theirs.
@@ -210,7 +210,7 @@ SUFFIXES = {
     FileKind.CSV: ".csv",
     FileKind.ROSS: ".toml",
 }
-"""How the names of files must end that are taken by name."""
+"""Endings of the files that are taken by name."""
 
 
 def sentence(kind: FileKind | None) -> str:

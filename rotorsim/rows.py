@@ -235,7 +235,7 @@ _BASES = {
     "Pa*s": ("mPa s", 1e3, 0.0), "K": ("°C", 1.0, -ZERO_CELSIUS), "N": ("kN", 1e-3, 0.0),
     "N/m": ("MN/m", 1e-6, 0.0), "N*s/m": ("kN s/m", 1e-3, 0.0), "m^3/s": ("L/min", 6e4, 0.0),
 }  # fmt: skip
-"""How entries of files without a name in `QUANTITIES` are shown, by their SI unit."""
+"""Quantities of entries of files without a name in `QUANTITIES`, by their SI unit."""
 
 
 def quantity(name: str, unit: str = "") -> Quantity:

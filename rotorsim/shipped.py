@@ -1,4 +1,4 @@
-"""What comes with the program, in the source tree and in the installed package."""
+"""Files that come with the program, in the source tree and in the installed package."""
 
 from __future__ import annotations
 

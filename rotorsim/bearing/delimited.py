@@ -75,7 +75,7 @@ _THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
 _WRITTEN = "speed as written"
 """Of a row: the speed in the file's own unit, for messages."""
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""How a cell begins that a spreadsheet program would evaluate."""
+"""Beginnings of cells that a spreadsheet program would evaluate."""
 _Row = dict[str, float | str]
 
 

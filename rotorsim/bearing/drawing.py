@@ -1,4 +1,4 @@
-"""What a drawing says about a bearing, and warnings where it is unlike bearings that run.
+"""Numbers of a bearing's drawing, and warnings where it is unlike bearings that run.
 
 The limits are those of ordinary oil-lubricated bearings: beyond them a number is more often
 mistyped (diameter for radius, diametral for radial clearance) than meant. They are warnings only;

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _SEAL = b"\nrotorsim sha256 "
-"""What precedes the checksum of all bytes before it; HDF5 ignores what follows its own end."""
+"""Mark before the checksum of all bytes before it; HDF5 ignores what follows its own end."""
 _SEALED = len(_SEAL) + 64
 """Bytes at the end of a file that this program wrote."""
 _MAX_BYTES = 500_000_000

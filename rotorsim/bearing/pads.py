@@ -1,12 +1,12 @@
-"""What is reported of tilting pads, one by one."""
+"""Results of tilting pads, one by one."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..film.bending import pad_bending
 from ..film.geometry import CENTER, pad_unknowns
 from ..film.heat import entering_temperature
@@ -14,8 +14,6 @@ from ..film.pad_frame import pad_frames
 from ..film.solution import FilmSolution
 from ..model import Bearing, Cavitation, Feed
 from .operating_point import PadResult
-
-Array = NDArray[np.float64]
 
 
 def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:

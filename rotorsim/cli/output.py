@@ -1,4 +1,4 @@
-"""Where words go: results to stdout, progress and complaints to stderr; and the exit codes."""
+"""Results to stdout, progress and complaints to stderr; and the exit codes."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ _COLUMNS = (
 
 
 _SMALL = QUANTITIES["radial_clearance"]
-"""How small lengths are shown."""
+"""Unit of small lengths."""
 
 
 def _head(symbol: str, unit: str) -> str:
@@ -253,7 +253,7 @@ def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
 
 
 _HEATED = ("load", "min_film_thickness", "max_pressure", "power_loss", "side_flow")
-"""What isothermal and THD are compared by."""
+"""Results by which isothermal and THD are compared."""
 _LEAST_WALL_SHARE = 0.005
 """Of the heat through the walls, from which on it is said."""
 

@@ -1,4 +1,4 @@
-"""Which formats there are, and from a file's name to its reader."""
+"""Formats of tables, and from a file's name to its reader."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What of a machine may be varied by name: in maps, tolerances and sensitivities.
+"""Parameters of a machine, by name: for maps, tolerances and sensitivities.
 
 ``speed``, ``drive end.radial_clearance``, ``impeller.destabilising_stiffness``: a word of
 `PARAMETERS`, and before a dot whose it is.

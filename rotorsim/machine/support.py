@@ -1,4 +1,4 @@
-"""What carries a node of a rotor: films, tables, springs, pedestals, seals."""
+"""Supports of a node of a rotor: films, tables, springs, pedestals, seals."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Support(ABC):
     """Names of the unknowns; the first `coupled` are the node's, the others the support's own."""
     coupled: int = 2
     carries_load: bool = True
-    """Whether it takes part in the static load; a seal does not."""
+    """It takes part in the static load; a seal does not."""
     frequency_dependent: bool = False
-    """Whether `dynamic_stiffness` is more than K + s C + s^2 M."""
+    """`dynamic_stiffness` is more than K + s C + s^2 M."""
 
     @property
     def speeds(self) -> Array:

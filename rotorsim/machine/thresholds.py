@@ -1,4 +1,4 @@
-"""Where a machine changes its verdict, and its critical speeds."""
+"""Threshold speeds, at which a machine changes its verdict, and critical speeds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a value may be, written once: annotations of the fields of a dataclass.
+"""Limits of values, written once as annotations of the fields of a dataclass.
 
 ``length: Annotated[float, Quantity("length", "80 mm")]`` says that Python code passes a number in
 SI, above 0, and that a file holds a text with a unit of length. `check` holds a new object against

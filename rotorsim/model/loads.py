@@ -1,4 +1,4 @@
-"""What acts on a rotor besides film and unbalance, each given in the load frame."""
+"""Loads on a rotor besides film and unbalance, each given in the load frame."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is simulated in time: speeds, forces, an actuator."""
+"""Settings of simulations in time: speeds, forces, an actuator."""
 
 from __future__ import annotations
 

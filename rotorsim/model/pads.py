@@ -23,7 +23,7 @@ class Pivot(ABC):
 
     kind: ClassVar[str]
     pitches: ClassVar[bool] = False
-    """Whether the pad may turn about the tangent as well, as a ball lets it."""
+    """The pad may turn about the tangent as well, as a ball lets it."""
     is_rigid: ClassVar[bool] = False
 
     @abstractmethod

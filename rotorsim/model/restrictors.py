@@ -101,6 +101,6 @@ class Pump(Restrictor):
         return self.rate, 0.0
 
 
-RESTRICTORS: dict[str, type[Restrictor]] = {kind.kind: kind for kind in (Capillary, Orifice, Pump)}
+_RESTRICTORS: dict[str, type[Restrictor]] = {kind.kind: kind for kind in (Capillary, Orifice, Pump)}
 """Every kind of restrictor, by its name in a file."""
-AnyRestrictor = Annotated[Restrictor, Made(RESTRICTORS)]
+AnyRestrictor = Annotated[Restrictor, Made(_RESTRICTORS)]

@@ -1,4 +1,4 @@
-"""What is modelled and how finely: the film's and the heat's settings."""
+"""Settings of the film and the heat: what is modelled, and how finely."""
 
 from __future__ import annotations
 

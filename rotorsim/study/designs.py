@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model.study import Range
 
-RESULTS = (
+_RESULTS = (
     "threshold_speed", "growth_rate", "critical_mass", "eccentricity_ratio", "load",
     "min_film_thickness", "max_pressure", "max_temperature", "power_loss", "side_flow",
 )  # fmt: skip
@@ -75,7 +75,7 @@ class _Variable:
 class Study:
     """Designs and what they come to.
 
-    designs : One row each: ``sample``, the variables by their names, ``status``, the `RESULTS` in
+    designs : One row each: ``sample``, the variables by their names, ``status``, the `_RESULTS` in
         SI. ``threshold_speed`` is the lowest at which the rotor loses its stability: infinite where
         it is stable at all speeds, 0 where it never is, NaN without a rotor or where a speed is not
         known.
@@ -106,10 +106,10 @@ class Study:
         goals = np.column_stack(
             [-found["threshold_speed"].fillna(0.0), found["power_loss"], found["max_temperature"]]
         )
-        return found.loc[undominated(goals)].sort_values(by="power_loss")
+        return found.loc[_undominated(goals)].sort_values(by="power_loss")
 
 
-def undominated(goals: Array) -> Booleans:
+def _undominated(goals: Array) -> Booleans:
     """Return whether no other row is as low in every column and lower in one, (n,)."""
     order = np.lexsort(goals.T[::-1])
     kept = np.zeros(len(goals), dtype=bool)
@@ -244,7 +244,7 @@ class _Design:
             scenario = base.replace(**dict(zip(self.names, values, strict=True)))
             points = sweep_points(list(scenario.cases()), list(scenario.speeds), workers=1)
         except RotorsimError as error:
-            return ["refused", *[math.nan] * len(RESULTS), str(error)]
+            return ["refused", *[math.nan] * len(_RESULTS), str(error)]
         return self._described(scenario, points)
 
     @staticmethod
@@ -261,7 +261,7 @@ class _Design:
             "critical_mass": math.nan if last.critical_mass is None else last.critical_mass,
         }
         bad = next((point for point in points if not point.converged), None)
-        numbers = [found.get(name, getattr(last, name, math.nan)) for name in RESULTS]
+        numbers = [found.get(name, getattr(last, name, math.nan)) for name in _RESULTS]
         status, message = (bad.status.value, bad.message) if bad else ("converged", "")
         return [status, *numbers, message]
 
@@ -277,7 +277,7 @@ class _Log:
         self.path = path
         self._head = [
             f"{_HEADER} {digest}; SI units {json.dumps(units)}",
-            ",".join(["sample", *design.names, "status", *RESULTS, "message"]),
+            ",".join(["sample", *design.names, "status", *_RESULTS, "message"]),
         ]
         self._rows = self._kept()
         self.done = {int(row.split(",", 1)[0]) for row in self._rows}

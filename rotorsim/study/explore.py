@@ -1,4 +1,4 @@
-"""What a person varies in a scenario by hand, and what a change comes to, quickly or in full."""
+"""Entries of a scenario varied by hand, and what a change comes to, quickly or in full."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 _Path = tuple[str | int, ...]
-"""Where an entry stands in the scenario: table, key; for one of several tables also its number."""
+"""Place of an entry in the scenario: table, key; for one of several tables also its number."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What goes into a calculation, with units, for `rotorsim check` and the report."""
+"""Inputs of a calculation, with units, for `rotorsim check` and the report."""
 
 from __future__ import annotations
 
@@ -259,7 +259,7 @@ _ACCURACY_OR_CHOICE = {
     "film": {"mesh"},
     "thermal": {"model"},
 }
-"""What may differ: accuracy, limits, and what the table itself is asked for."""
+"""Entries that may differ: accuracy, limits, and what the table itself is asked for."""
 
 
 def differences(scenario: Scenario, table: CoefficientTable) -> list[str]:

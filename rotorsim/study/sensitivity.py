@@ -1,4 +1,4 @@
-"""Which parameter of which bearing moves a machine's stability threshold most."""
+"""Sensitivity of a machine's stability threshold to the parameters of its bearings."""
 
 from __future__ import annotations
 

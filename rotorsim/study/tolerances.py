@@ -1,4 +1,4 @@
-"""What tolerances mean: films of a bearing or a machine solved for many samples of its inputs."""
+"""Tolerances: films of a bearing or a machine solved for many samples of its inputs."""
 
 from __future__ import annotations
 
