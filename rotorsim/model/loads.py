@@ -8,18 +8,7 @@ from enum import StrEnum
 from typing import Annotated
 
 from ..errors import InputError
-from .entries import (
-    Duration,
-    Example,
-    Frequency,
-    Instant,
-    Key,
-    Leaf,
-    Pair,
-    Quantity,
-    check,
-    choice,
-)
+from .entries import Duration, Example, Frequency, Instant, Key, Leaf, Pair, Quantity, check, choice
 
 _Force = Annotated[float, Quantity("force", "500 N", "any")]
 Forces = Annotated[tuple[_Force, _Force], Example(["500 N", "0 N"])]

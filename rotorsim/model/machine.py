@@ -13,17 +13,7 @@ from typing import Annotated, Any
 
 from ..errors import InputError
 from ..units import parse_quantity
-from .entries import (
-    Angle,
-    Displacement,
-    Example,
-    Leaf,
-    Length,
-    Mass,
-    Number,
-    Quantity,
-    Speed,
-)
+from .entries import Angle, Displacement, Example, Leaf, Length, Mass, Number, Quantity, Speed
 from .entries import (
     Clearance as RadialClearance,
 )

@@ -12,10 +12,7 @@ from ..arrays import Array
 from ..files.machine import MachineFile
 from ..model.machine_orbit import MachineForce, MachineOrbit
 from ..orbit.continuation import Branch, follow_forced, follow_limit_cycle
-from ..orbit.motion import (
-    MotionProblem,
-    simulate_motion,
-)
+from ..orbit.motion import MotionProblem, simulate_motion
 from ..orbit.orbit import OrbitStatus
 from .machine_motion import motion_problem
 

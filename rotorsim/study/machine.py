@@ -26,9 +26,7 @@ from ..machine.thresholds import (
     find_thresholds,
     subdivided,
 )
-from .machine_supports import (
-    SupportState,
-)
+from .machine_supports import SupportState
 
 _MESH_MODES = 8
 """Modes whose change on twice the mesh is stated."""

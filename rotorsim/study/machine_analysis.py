@@ -21,12 +21,7 @@ from ..film.geometry import rotation
 from ..machine.machine import Machine, Mount
 from ..machine.peaks import node_at
 from ..machine.statics import Law, StaticEquilibrium, static_equilibrium
-from ..machine.support import (
-    Support,
-    TableSupport,
-    Turned,
-    cross_stiffness,
-)
+from ..machine.support import Support, TableSupport, Turned, cross_stiffness
 from ..model import Case, LoadTarget, ThermalModel
 from ..model.machine import SupportEntry
 from ..rotor import Rotor

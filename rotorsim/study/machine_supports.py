@@ -14,14 +14,7 @@ from ..film.geometry import rotation
 from ..machine.machine import Mount
 from ..machine.peaks import node_at
 from ..machine.statics import weight
-from ..machine.support import (
-    ConstantSupport,
-    MatrixTable,
-    Pedestal,
-    Support,
-    TableSupport,
-    Turned,
-)
+from ..machine.support import ConstantSupport, MatrixTable, Pedestal, Support, TableSupport, Turned
 from ..model.machine import Matrix, SealEntry, SupportEntry
 from ..rotor import Rotor
 from .rings import centred_damping

@@ -14,12 +14,8 @@ from ..orbit.description import describe_orbit
 from ..orbit.film_force import SolvedFilmForce
 from ..orbit.film_map import squeezed_film
 from ..orbit.force_map import FilmMapForce
-from ..orbit.forces import (
-    ShortBearingForce,
-)
-from ..orbit.motion import (
-    Motion,
-)
+from ..orbit.forces import ShortBearingForce
+from ..orbit.motion import Motion
 from ..orbit.orbit import Orbit, OrbitStatus
 from ..orbit.system import Link
 from .orbits import FilmFrame
