@@ -43,7 +43,7 @@ html_copy_source = False
 
 def write_table_variables() -> None:
     """What a coefficient table holds, from the program's own list."""
-    from rotorsim.bearing.table_data import ATTRIBUTES
+    from rotorsim.bearing.table_format import ATTRIBUTES
 
     rows = [f"| `{name}` | {unit} | {text} |" for name, (unit, text) in ATTRIBUTES.items()]
     target = HERE / "_generated" / "table_variables.md"

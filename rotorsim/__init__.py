@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from .show.plot import plot
     from .show.viewer import open_viewer
     from .status import SolveStatus, Stability
-    from .study.machine import analyse_machine
-    from .study.machine_motion import forced_response, largest_disturbance, limit_cycles, simulate
+    from .study.limit_cycles import forced_response, largest_disturbance, limit_cycles
+    from .study.machine_analysis import analyse_machine
+    from .study.machine_motion import simulate
     from .study.machines import modes, state_space, unbalance_response
     from .study.orbits import simulate_orbit
     from .study.points import solve
@@ -92,13 +93,9 @@ _HOMES = {
     "show.plot": ("plot",),
     "show.viewer": ("open_viewer",),
     "status": ("SolveStatus", "Stability"),
-    "study.machine": ("analyse_machine",),
-    "study.machine_motion": (
-        "forced_response",
-        "largest_disturbance",
-        "limit_cycles",
-        "simulate",
-    ),
+    "study.limit_cycles": ("forced_response", "largest_disturbance", "limit_cycles"),
+    "study.machine_analysis": ("analyse_machine",),
+    "study.machine_motion": ("simulate",),
     "study.machines": ("modes", "state_space", "unbalance_response"),
     "study.orbits": ("simulate_orbit",),
     "study.sweep": ("tabulate",),

@@ -1,13 +1,16 @@
-"""Arguments of the Python interface that are easily mistaken for one another."""
+"""Arguments that are easily mistaken for one another, and lists of values."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from .errors import InputError
 
+_MOST_VALUES = 1000
 _HOW = {"rad/s": "; from rpm: rpm * 3.14159 / 30", "m": "; from um: um * 1e-6", "kg": ""}
 
 
@@ -62,10 +65,7 @@ def finite_number(value: Any, key: str, unit: str = "") -> float:
 
 
 def above_zero(prefix: str, **values: float) -> None:
-    """Refuse values that are not finite and above zero; their keys are `prefix` and name.
-
-    Raises InputError.
-    """
+    """Refuse values that are not finite and above zero; their keys are `prefix` and name."""
     for name, value in values.items():
         if not (math.isfinite(value) and value > 0.0):
             raise InputError("must be above 0", key=f"{prefix}.{name}", value=value)
@@ -76,3 +76,32 @@ def not_negative(prefix: str, **values: float) -> None:
     for name, value in values.items():
         if not (math.isfinite(value) and value >= 0.0):
             raise InputError("must be 0 or more", key=f"{prefix}.{name}", value=value)
+
+
+def ascending_values(
+    given: object, read: Callable[[object], float], key: str, example: str
+) -> list[float]:
+    """Return ascending values: ``"a, b, c"``, ``"start : stop : count"``, or a list of texts.
+
+    read : From a text to its value.
+    """
+    if isinstance(given, str):
+        parts = [part.strip() for part in given.split(":")]
+        if len(parts) == 3:
+            first, last, count = parts
+            if not (count.isascii() and count.isdigit() and 2 <= int(count) <= _MOST_VALUES):
+                message = f"the count must be a whole number from 2 to {_MOST_VALUES}"
+                raise InputError(message, key=key, value=given)
+            import numpy as np
+
+            values = np.linspace(read(first), read(last), int(count)).tolist()
+        elif len(parts) == 1:
+            values = [read(part.strip()) for part in given.split(",")]
+        else:
+            message = f'must be a list "{example}, ..." or "start : stop : count"'
+            raise InputError(message, key=key, value=given)
+    else:
+        values = [read(part) for part in (given if isinstance(given, Sequence) else [given])]
+    if len(values) > _MOST_VALUES or any(b <= a for a, b in pairwise(values)):
+        raise InputError(f"must ascend, at most {_MOST_VALUES} values", key=key, value=given)
+    return values

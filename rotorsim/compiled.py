@@ -146,10 +146,7 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def _value(value: Any, seen: set[int]) -> Iterator[bytes]:
-    """Return what a constant or a global name stands for.
-
-    As far as it is compiled into a function.
-    """
+    """Return what a constant or a global name stands for, as far as it is compiled in."""
     if isinstance(value, np.ndarray):
         yield f"{value.dtype}{value.shape}".encode() + value.tobytes()
     elif isinstance(value, _PLAIN):

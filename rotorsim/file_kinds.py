@@ -1,4 +1,4 @@
-"""What a file is, by its first bytes and its name, which command takes it, and its contents.
+"""Kinds of files, by first bytes and name; the command that takes each, and its contents.
 
 Nothing here decides what can be read: the readers do, and ask here only for what to say of a file
 that is not theirs.
@@ -112,10 +112,7 @@ _COEFFICIENT = re.compile(rb"^[ \t]*kxx[ \t]*=", re.M)
 
 
 def is_missing(path: str | Path) -> bool:
-    """Return whether there is nothing of that name.
-
-    False where that cannot be told (permissions).
-    """
+    """Return whether there is nothing of that name; False where that cannot be told."""
     try:
         os.lstat(path)
     except (FileNotFoundError, NotADirectoryError):
@@ -161,10 +158,7 @@ def read_bytes(path: str | Path, most: int, error: type[InputError] = InputError
 
 
 def kind_of(path: str | Path) -> FileKind | None:
-    """Return kind of the file at `path`: by its contents, else by its name.
-
-    None where neither tells.
-    """
+    """Return the kind of a file by its contents, else by its name; None where neither tells."""
     try:
         if not os.path.isfile(path):  # opening a pipe would wait for who writes to it
             return None
@@ -216,7 +210,7 @@ SUFFIXES = {
     FileKind.CSV: ".csv",
     FileKind.ROSS: ".toml",
 }
-"""How the names of files must end that are taken by name."""
+"""Endings of the files that are taken by name."""
 
 
 def sentence(kind: FileKind | None) -> str:

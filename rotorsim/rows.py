@@ -78,10 +78,7 @@ def shown_unit(unit: str) -> tuple[str, float, float]:
 
 
 def axis_title(label: str, unit: str) -> str:
-    """Return title of a figure's axis.
-
-    ``pressure [psi]`` where the unit given is MPa and US is shown.
-    """
+    """Return the title of a figure's axis in the unit that is shown: ``pressure [psi]``."""
     return f"{label} [{shown_unit(unit)[0]}]"
 
 
@@ -92,10 +89,7 @@ def in_shown_unit(value: Any, unit: str) -> Any:
 
 
 def shown(value: float | None, unit: str, digits: int = 4) -> str:
-    """Return short text of a value in `unit`, in the unit that is shown in its place.
-
-    See `heads`.
-    """
+    """Return short text of a value in `unit`, in the unit shown in its place; see `heads`."""
     return number(None if value is None else in_shown_unit(value, unit), digits)
 
 
@@ -122,7 +116,7 @@ def with_unit(value: float, unit: str, digits: int = 4) -> str:
 
 @dataclass(frozen=True)
 class Quantity:
-    """How a quantity is shown.
+    """Name, unit and scale with which a quantity is shown.
 
     label, symbol : In words, and short for the head of a column.
     base : Unit where nothing else is asked for; `unit` is the one shown.
@@ -241,7 +235,7 @@ _BASES = {
     "Pa*s": ("mPa s", 1e3, 0.0), "K": ("°C", 1.0, -ZERO_CELSIUS), "N": ("kN", 1e-3, 0.0),
     "N/m": ("MN/m", 1e-6, 0.0), "N*s/m": ("kN s/m", 1e-3, 0.0), "m^3/s": ("L/min", 6e4, 0.0),
 }  # fmt: skip
-"""How entries of files without a name in `QUANTITIES` are shown, by their SI unit."""
+"""Quantities of entries of files without a name in `QUANTITIES`, by their SI unit."""
 
 
 def quantity(name: str, unit: str = "") -> Quantity:

@@ -1,4 +1,4 @@
-"""What comes with the program, in the source tree and in the installed package."""
+"""Files that come with the program, in the source tree and in the installed package."""
 
 from __future__ import annotations
 
@@ -47,10 +47,7 @@ def shipped_tables() -> dict[str, Path]:
 
 
 def shipped_file(name: str) -> Path | None:
-    """Return the file behind a name as it is typed.
-
-    ``dal`` is a scenario, ``dal.nc`` a table, ``machines/compressor`` a machine.
-    """
+    """Return the file of a name: ``dal`` (scenario), ``dal.nc`` (table), ``machines/train``."""
     if name.endswith(".nc"):
         return shipped_tables().get(name.removesuffix(".nc"))
     return shipped_scenarios().get(name) or shipped_machines().get(name)

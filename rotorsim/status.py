@@ -1,4 +1,4 @@
-"""How a computation ended: a value that travels with the result."""
+"""Status of a computation: a value that travels with the result."""
 
 from __future__ import annotations
 

@@ -14,12 +14,11 @@ text, separated by blanks, may have their header and units in comments.
 
 from __future__ import annotations
 
-import codecs
 import csv
 import io
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -29,10 +28,12 @@ import numpy as np
 from ..arguments import file_path
 from ..atomic import write_text
 from ..errors import InputError, TableError
-from ..file_kinds import HEAD, FileKind, read_bytes, recognise, sentence
 from ..status import SolveStatus
 from ..units import parse_unit
-from .table_data import (
+from . import csv_cells
+from .csv_cells import LONGEST_NAME, MASSES, Line, named
+from .table_data import build, without_standstill
+from .table_format import (
     ATTRIBUTES,
     COEFFICIENTS,
     CONSTANT,
@@ -43,14 +44,11 @@ from .table_data import (
     FULL_COEFFICIENTS,
     LARGEST,
     NOTES,
-    build,
-    without_standstill,
 )
 
 if TYPE_CHECKING:
     import xarray as xr
 
-_MAX_BYTES = 20_000_000
 _KINDS = {
     "speed": "speed",
     "radial_clearance": "length",
@@ -66,36 +64,24 @@ _UNIT_EXAMPLES = {
     "damping": "N s/m, kN s/m, lbf s/in",
 }
 _LARGEST = {"speed": FASTEST, "length": 1.0, "force": LARGEST, "stiffness": LARGEST}
-_MASSES = ("mxx", "mxy", "myx", "myy")
 _WHIRL = ("frequency", "whirl_frequency", "excitation_frequency", "frequency_ratio")
 _TEXT = ("thermal_model", "status")
-_OTHER_NAMES = {"rpm": "speed", "rotor_speed": "speed", "shaft_speed": "speed"} | {
-    f"{name[0]}_{name[1:]}": name for name in (*COEFFICIENTS, *_MASSES)
-}
-_HEADER = re.compile(r"\s*([^\[\]()]*?)\s*(?:\[([^\]]*)\]|\(([^)]*)\))?\s*")
 _NUMBER = re.compile(
     r"[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?|[+-]?(nan|inf|infinity)", re.IGNORECASE | re.ASCII
 )
 _DIGITS = re.compile(r"[+-]?[\d.,]+(e[+-]?\d+)?", re.IGNORECASE | re.ASCII)
 """A number, or what somebody meant as one."""
 _THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+", re.ASCII)
-_SEPARATORS = (",", ";", "\t", "|")
-_TITLE_LINES = 50
-"""Lines of a sheet that may stand before its header."""
 _WRITTEN = "speed as written"
 """Of a row: the speed in the file's own unit, for messages."""
-_LONGEST_NAME = 100
-"""Characters in a header's cell."""
 _FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""How a cell begins that a spreadsheet program would evaluate."""
+"""Beginnings of cells that a spreadsheet program would evaluate."""
 _Row = dict[str, float | str]
-_Line = tuple[int, list[str]]
-"""Number of a line in the file, and its cells."""
 
 
 @dataclass(frozen=True)
 class _Column:
-    """What a column holds: `name` is a key of `_KINDS`, one of `_MASSES`, or one of `_TEXT`."""
+    """Content of a column: `name` is a key of `_KINDS`, one of `MASSES`, or one of `_TEXT`."""
 
     place: int
     name: str
@@ -108,8 +94,7 @@ def read(path: str | Path) -> xr.Dataset:
     Raises TableError: With the file, and the row and column where something is wrong.
     """
     source = file_path(path)
-    lines, separator = _lines(_text(source), source)
-    lines = _from_header(lines)
+    lines, separator = csv_cells.cells(source, {"kxx", "cxx"}.issubset, whole=True)
     units, rows = _units_row(lines)
     if not rows:
         raise TableError("a header and at least one row are needed", source=source)
@@ -123,115 +108,7 @@ def read(path: str | Path) -> xr.Dataset:
     return without_standstill(_arrange(parsed, source, notes), source)
 
 
-def cells(
-    source: Path, is_header: Callable[[list[str]], bool], other_names: Mapping[str, str]
-) -> tuple[list[_Line], str]:
-    """Return lines of a CSV table from its header on, cut into cells, and what separates them."""
-
-    def header(line: Sequence[str]) -> bool:
-        return is_header([named(cell, other_names)[0] for cell in line])
-
-    lines, separator = _lines(_text(source), source, header)
-    for place, (_, line) in enumerate(lines[:_TITLE_LINES]):
-        if header(line):
-            return lines[place:], separator
-    return [], separator
-
-
-def _text(source: Path) -> str:
-    """Return the text of a file that is one, and no other kind of file."""
-    data = read_bytes(source, _MAX_BYTES, TableError)
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        try:
-            return data.decode("utf-16")
-        except UnicodeDecodeError as error:
-            raise TableError(f"is no text in UTF-16 ({error.reason})", source=source) from None
-    kind = recognise(data[:HEAD])
-    if kind not in (None, FileKind.CSV):
-        raise TableError(f"{sentence(kind)}; here a CSV table is needed", source=source)
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        raise TableError(
-            f"must be text in UTF-8; byte 0x{data[error.start]:02x} in line {line} is not; save it "
-            'as UTF-8 ("CSV UTF-8")',
-            source=source,
-        ) from None
-
-
-def _lines(
-    text: str, source: Path, header: Callable[[Sequence[str]], bool] | None = None
-) -> tuple[list[_Line], str]:
-    """Return the lines that hold something and are no comments, and what separates their cells."""
-    lines = text.splitlines()
-    stated = re.match(r"sep=([,;|\t])$", lines[0].strip(" \"'")) if lines else None
-    if stated:  # a line for spreadsheet programs
-        lines[0] = ""
-    separator = stated[1] if stated else _separator(lines, header or _is_header)
-    if not separator:
-        lines, separator = _from_blanks(lines, header or _is_header), ","
-    try:
-        found = [
-            (number, [cell.strip() for cell in cells])
-            for number, cells in enumerate(csv.reader(lines, delimiter=separator), start=1)
-            if any(cell.strip() for cell in cells) and not cells[0].lstrip().startswith("#")
-        ]
-    except csv.Error as error:
-        raise TableError(f"is no CSV table: {error}", source=source) from None
-    return found, separator
-
-
-def _separator(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> str:
-    """Return separator of the first line that it cuts into the columns of a table.
-
-    Empty where only blanks do, else the comma.
-    """
-    for line in lines[:_TITLE_LINES]:
-        if line.strip() and not line.lstrip().startswith("#"):
-            for separator in _SEPARATORS:
-                if header(line.split(separator)):
-                    return separator
-    blanks = any(header(line.lstrip("# ").split()) for line in lines[:_TITLE_LINES])
-    return "" if blanks else ","
-
-
-def _from_blanks(lines: Sequence[str], header: Callable[[Sequence[str]], bool]) -> list[str]:
-    """Put commas between columns of blanks, from the header on.
-
-    Header and units may stand in comments.
-    """
-    place = next(k for k, line in enumerate(lines) if header(line.lstrip("# ").split()))
-    above = [""] * place
-    return above + [
-        ",".join((line.lstrip("# ") if k < 2 else line).split())
-        for k, line in enumerate(lines[place:])
-    ]
-
-
-def _is_header(cells: Sequence[str]) -> bool:
-    return {"kxx", "cxx"} <= {named(cell)[0] for cell in cells}
-
-
-def _from_header(lines: list[_Line]) -> list[_Line]:
-    """Leave out the title lines that sheets begin with."""
-    for place, (_, cells) in enumerate(lines[:_TITLE_LINES]):
-        if _is_header(cells):
-            return lines[place:]
-    return lines
-
-
-def named(cell: str, other_names: Mapping[str, str] = _OTHER_NAMES) -> tuple[str, str]:
-    """Return the name as this program calls it, and unit, of a header's cell."""
-    match = _HEADER.fullmatch(cell) if len(cell) <= _LONGEST_NAME else None
-    if match is None:
-        return cell.strip()[:_LONGEST_NAME], ""
-    name = re.sub(r"[\s_]+", "_", match[1].strip(" \"'").lower())
-    unit = (match[2] or match[3] or "").strip()
-    return other_names.get(name, name), unit
-
-
-def _units_row(lines: list[_Line]) -> tuple[list[str] | None, list[_Line]]:
+def _units_row(lines: list[Line]) -> tuple[list[str] | None, list[Line]]:
     """Return the cells of the row of units, where there is one, and the rows below."""
     if len(lines) < 2:
         return None, []
@@ -246,7 +123,7 @@ def _units_row(lines: list[_Line]) -> tuple[list[str] | None, list[_Line]]:
 
 
 def _columns(
-    header: list[str], units: list[str] | None, rows: list[_Line], source: Path
+    header: list[str], units: list[str] | None, rows: list[Line], source: Path
 ) -> tuple[list[_Column], list[str]]:
     """Return the columns that count, and the names of those that are left out."""
     columns: list[_Column] = []
@@ -259,7 +136,7 @@ def _columns(
             unit = "rpm"
         if name in _KINDS:
             columns.append(_Column(place, name, _factor(name, unit, cell, source)))
-        elif name in _TEXT or name in _MASSES:
+        elif name in _TEXT or name in MASSES:
             columns.append(_Column(place, name))
         elif name in _WHIRL:
             raise TableError(
@@ -268,7 +145,7 @@ def _columns(
                 source=source, key="header", value=_shown(cell),
             )  # fmt: skip
         elif any(place < len(cells) and cells[place] for _, cells in rows):
-            left_out.append(cell[:_LONGEST_NAME] or f"number {place + 1}")
+            left_out.append(cell[:LONGEST_NAME] or f"number {place + 1}")
     names = [column.name for column in columns]
     missing = [name for name in COEFFICIENTS if name not in names]
     if missing:
@@ -298,7 +175,7 @@ def _factor(name: str, unit: str, cell: str, source: Path) -> float:
         ) from None  # fmt: skip
 
 
-def _decimal_comma(rows: list[_Line], columns: list[_Column], source: Path) -> bool:
+def _decimal_comma(rows: list[Line], columns: list[_Column], source: Path) -> bool:
     """Return whether decimals are written with a comma.
 
     In a file whose columns something else separates.
@@ -357,7 +234,7 @@ def _row(
         if column.name not in _TEXT:
             cell = cells[column.place]
             key = f"row {number}, column {column.name}"
-            if column.name in _MASSES:
+            if column.name in MASSES:
                 _check_no_mass(cell.replace(",", ".") if comma else cell, key, source)
                 continue
             value = _value(cell.replace(",", ".") if comma else cell, cell, key, source)
@@ -369,7 +246,7 @@ def _row(
 
 def _shown(cell: str) -> str:
     """Return the cell for a message."""
-    return cell if len(cell) <= _LONGEST_NAME else f"{cell[:_LONGEST_NAME]}..."
+    return cell if len(cell) <= LONGEST_NAME else f"{cell[:LONGEST_NAME]}..."
 
 
 def _value(text: str, cell: str, key: str, source: Path) -> float:

@@ -59,10 +59,7 @@ def point_title(point: OperatingPoint) -> str:
 
 
 def curve_title(thermal_model: str, radial_clearance: float, *more: str) -> str:
-    """Return ``thd, c = 100 µm``, and what else is said of a curve.
-
-    An unknown clearance is left out.
-    """
+    """Return ``thd, c = 100 µm``, and what else is said; not an unknown clearance."""
     known = math.isfinite(radial_clearance)
     clearance = [QUANTITIES["radial_clearance"].said(radial_clearance)] if known else []
     return ", ".join([thermal_model, *clearance, *more])
@@ -95,10 +92,7 @@ def point_status(point: OperatingPoint) -> str:
 
 
 def point_text(point: OperatingPoint, name: str, digits: int | None = None) -> str:
-    """Return one of a point's `QUANTITIES` as text, in the unit shown.
-
-    A dash where it is not known.
-    """
+    """Return one of a point's `QUANTITIES` as text, in the unit shown; a dash if unknown."""
     if name == "wall_heat_share":
         heat = point.heat_balance
         known = heat is not None and math.isfinite(heat.wall_share)
@@ -192,10 +186,7 @@ def coefficient_tables(table: CoefficientTable) -> Iterator[tuple[str, list[list
 
 
 def table_html_of(table: CoefficientTable) -> str:
-    """Return coefficient table for notebooks.
-
-    Of many speeds the lowest, the middle and the highest.
-    """
+    """Return a table for notebooks; of many speeds the lowest, middle and highest."""
     sizes = ", ".join(f"{table.dataset.sizes[name]} × {name}" for name in table.dataset["kxx"].dims)
     low, high = table.speeds[0] * RPM, table.speeds[-1] * RPM
     good, total, last = int(table.converged.sum()), table.converged.size, table.speeds.size - 1

@@ -1,4 +1,4 @@
-"""What a drawing says about a bearing, and warnings where it is unlike bearings that run.
+"""Numbers of a bearing's drawing, and warnings where it is unlike bearings that run.
 
 The limits are those of ordinary oil-lubricated bearings: beyond them a number is more often
 mistyped (diameter for radius, diametral for radial clearance) than meant. They are warnings only;
@@ -32,8 +32,8 @@ _GREAT_HEATING = 100.0
 
 
 @dataclass(frozen=True)
-class DrawingNumbers:
-    """What a drawing gives, as engineers compare bearings.
+class _DrawingNumbers:
+    """Numbers of a drawing, as engineers compare bearings.
 
     diameter : [m]
     diametral_clearance : [m]
@@ -50,7 +50,7 @@ class DrawingNumbers:
     weight_to_load: float | None
 
 
-def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbers:
+def drawing_numbers(case: Case, rotor_mass: float | None = None) -> _DrawingNumbers:
     """Return the numbers of a case's drawing.
 
     rotor_mass : Per bearing [kg].
@@ -69,7 +69,7 @@ def drawing_numbers(case: Case, rotor_mass: float | None = None) -> DrawingNumbe
     """
     bearing = case.bearing
     load = (case.target.load or None) if isinstance(case.target, LoadTarget) else None
-    return DrawingNumbers(
+    return _DrawingNumbers(
         diameter=bearing.diameter,
         length_to_diameter=bearing.length / bearing.diameter,
         diametral_clearance=2.0 * bearing.radial_clearance,
@@ -112,10 +112,7 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
 
 
 def _warm_flow(numbers: DerivedNumbers) -> list[str]:
-    """Return limits that only the estimated warm film exceeds.
-
-    The cold one has its own warnings.
-    """
+    """Return limits that only the estimated warm film exceeds."""
     at = f"with the estimated warm viscosity ({numbers.warm_temperature - ZERO_CELSIUS:.0f} °C)"
     return [
         f"{name} number {warm:.4g} {at} is above {limit:g}: the film may be {what} when hot"
@@ -133,7 +130,7 @@ def _warm_flow(numbers: DerivedNumbers) -> list[str]:
     ]  # fmt: skip
 
 
-def _size_warnings(numbers: DrawingNumbers) -> list[str]:
+def _size_warnings(numbers: _DrawingNumbers) -> list[str]:
     found = []
     low, high = _CLEARANCE_RATIO
     if not low <= numbers.clearance_ratio <= high:

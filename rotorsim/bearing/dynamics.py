@@ -1,4 +1,4 @@
-"""Films whose forces depend on the frequency of the motion: coefficients, threshold, eigenvalues.
+"""Films whose forces depend on the frequency of the motion: coefficients, threshold.
 
 A mass-conserving film stores oil in its ruptured sector, so that K and C are functions of the whirl
 frequency nu: A(i nu) = K(nu) + i nu C(nu). A rigid rotor of mass M per bearing moves as exp(s t)
@@ -16,7 +16,6 @@ matrices.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -50,8 +49,6 @@ _PAD_RATIOS = np.geomspace(0.02, 20.0, 181)
 _RATIO_TOLERANCE = 1e-9
 _NOTHING = 1e-9
 """Change of the stiffness by stored oil, relative to it, that counts as none."""
-_NEWTON_STEPS = 30
-_EIGENVALUE_TOLERANCE = 1e-10
 
 
 @dataclass(frozen=True)
@@ -95,14 +92,11 @@ class FilmDynamics:
 
     @property
     def has_pads(self) -> bool:
-        """Whether there are displacements besides the journal's."""
+        """Return whether there are displacements besides the journal's."""
         return self.mass is not None
 
     def stated_coefficients(self) -> tuple[Array, Array, float | None]:
-        """Return K, C of the journal and the whirl frequency ratio at which they hold.
-
-        None: at any.
-        """
+        """Return K, C of the journal and the whirl frequency ratio at which they hold."""
         if self.has_pads:
             return *self.coefficients(1.0), 1.0
         if self.stored_oil is None:
@@ -179,10 +173,7 @@ class FilmDynamics:
         )
 
     def _crossings(self) -> list[tuple[float, float]]:
-        """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed.
-
-        There m nu^2 is a real eigenvalue of the reduced A(i nu).
-        """
+        """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed."""
         from scipy.optimize import brentq
 
         found: list[tuple[float, float]] = []
@@ -428,61 +419,3 @@ def stored_oil_warnings(
         f"at {ratio:.3g} of the shaft's, where the critical mass is exact; for others give "
         "film.frequency_ratio",
     )
-
-
-def rigid_eigenvalues(dynamics: FilmDynamics, mass: float) -> ComplexArray:
-    """Return the eigenvalues [1/s] of a rigid rotor of `mass` per bearing [kg].
-
-    A film that stores oil has more than the rotor: up to four of the least damped pairs are given.
-
-    Raises ArithmeticError: None was found.
-    """
-    if dynamics.stored_oil is None:
-        return _pad_eigenvalues(dynamics, mass)
-    if dynamics.has_pads:
-        guesses = list(_pad_eigenvalues(dynamics, mass))
-    else:
-        guesses = [1j * nu for nu in dynamics.oil_scan.least_damped(mass)]
-    inertia = np.zeros((len(dynamics.names), len(dynamics.names)))
-    inertia[[0, 1], [0, 1]] = mass
-
-    def law(s: complex) -> ComplexArray:
-        return dynamics(s) + s * s * inertia
-
-    found: list[complex] = []
-    for guess in guesses:
-        if guess.imag < 0.0:
-            continue
-        with suppress(ArithmeticError):
-            root = _refine_eigenvalue(law, guess, known=found)
-            real = abs(root.imag) <= 1e-9 * abs(root)
-            found += [complex(root.real)] if real else [root, root.conjugate()]
-    if not found:
-        raise ArithmeticError(f"no eigenvalue was found for {mass:.6g} kg")
-    return np.array(found)
-
-
-def _refine_eigenvalue(
-    law: Callable[[complex], ComplexArray], guess: complex, *, known: Sequence[complex] = ()
-) -> complex:
-    """Return s near `guess` at which the matrix `law(s)` is singular, other than those `known`.
-
-    Newton's method on det(law(s)) divided by the product of (s - known).
-
-    Raises ArithmeticError: It did not converge.
-    """
-    s = complex(guess)
-    for _ in range(_NEWTON_STEPS):
-        difference = 1e-6 * max(abs(s), 1.0)
-        matrix = law(s)
-        try:
-            slope = np.trace(np.linalg.solve(matrix, law(s + difference) - matrix)) / difference
-        except np.linalg.LinAlgError:
-            return s
-        slope -= sum(1.0 / (s - other) for other in known if other != s)
-        s -= 1.0 / slope
-        if not np.isfinite(s):
-            break
-        if abs(1.0 / slope) <= _EIGENVALUE_TOLERANCE * abs(s):
-            return s
-    raise ArithmeticError(f"no eigenvalue was found near {guess:.6g} 1/s")

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from ..arrays import Array, Booleans, Indices
 from ..errors import InputError, OutOfRangeError, TableError
 from ..status import SolveStatus
-from .table_data import COEFFICIENTS, PAD_MATRICES, UNKNOWNS, build, common_unknowns
+from .table_data import build, common_unknowns
+from .table_format import COEFFICIENTS, PAD_MATRICES, UNKNOWNS
 
 if TYPE_CHECKING:
     import xarray as xr

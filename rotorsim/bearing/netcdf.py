@@ -14,13 +14,14 @@ from ..arguments import file_path
 from ..atomic import write_bytes
 from ..errors import TableError
 from ..file_kinds import HEAD, FileKind, is_missing, read_bytes, recognise, sentence
-from .table_data import TABLE_VERSION, scenario_digest
+from .table_data import scenario_digest
+from .table_format import TABLE_VERSION
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _SEAL = b"\nrotorsim sha256 "
-"""What precedes the checksum of all bytes before it; HDF5 ignores what follows its own end."""
+"""Mark before the checksum of all bytes before it; HDF5 ignores what follows its own end."""
 _SEALED = len(_SEAL) + 64
 """Bytes at the end of a file that this program wrote."""
 _MAX_BYTES = 500_000_000

@@ -321,7 +321,7 @@ class OperatingPoint:
 
     @property
     def converged(self) -> bool:
-        """Whether the numbers may be used."""
+        """Return whether the numbers may be used."""
         return self.status is SolveStatus.CONVERGED
 
     @property
@@ -431,10 +431,7 @@ def failed_point(
 
 
 def plain(value: Any) -> Any:
-    """Return `value` made of what JSON knows.
-
-    Numpy, enumerations, paths and tuples are converted.
-    """
+    """Return `value` with numpy, enumerations, paths and tuples as JSON knows them."""
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, Mapping):

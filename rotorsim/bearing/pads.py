@@ -1,12 +1,12 @@
-"""What is reported of tilting pads, one by one."""
+"""Results of tilting pads, one by one."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..film.bending import pad_bending
 from ..film.geometry import CENTER, pad_unknowns
 from ..film.heat import entering_temperature
@@ -14,8 +14,6 @@ from ..film.pad_frame import pad_frames
 from ..film.solution import FilmSolution
 from ..model import Bearing, Cavitation, Feed
 from .operating_point import PadResult
-
-Array = NDArray[np.float64]
 
 
 def pad_results(solution: FilmSolution) -> tuple[PadResult, ...]:
@@ -100,10 +98,7 @@ def supply_warnings(
 def lacking_pads(
     bearing: Bearing, cavitation: Cavitation, demand: Sequence[float]
 ) -> tuple[int, ...]:
-    """Return pads that get less oil than their films' `demand` [m3/s].
-
-    In a film that makes the rest.
-    """
+    """Return pads that get less oil than their films' `demand` [m3/s], in a film that splits it."""
     flow = bearing.supply_flow
     if flow is None or bearing.feed is Feed.FLOODED or cavitation is Cavitation.JFO:
         return ()

@@ -285,10 +285,7 @@ def _temperatures(solution: FilmSolution, fraction: Array) -> tuple[float, float
 
 
 def _shaft_temperature(solution: FilmSolution) -> float:
-    """Return temperature of the journal's surface [K].
-
-    An isothermal film has the supply's throughout.
-    """
+    """Return the temperature of the journal's surface [K]; of an isothermal film the supply's."""
     if solution.thermal is None:
         return solution.problem.thermal.supply_temperature
     return solution.thermal.heat.shaft

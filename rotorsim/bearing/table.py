@@ -16,7 +16,7 @@ from ..status import SolveStatus
 from . import delimited, netcdf
 from . import table_data as assembly
 from .interpolation import CoefficientInterpolator, Coefficients
-from .table_data import COEFFICIENTS, DIMENSIONS
+from .table_format import COEFFICIENTS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -149,11 +149,6 @@ class CoefficientTable:
         return table_html_of(self)
 
     @property
-    def extra_dimensions(self) -> tuple[str, ...]:
-        """Dimensions added by `stack`."""
-        return tuple(str(d) for d in self.dataset["kxx"].dims if d not in DIMENSIONS)
-
-    @property
     def choices(self) -> tuple[str, ...]:
         """All dimensions but the speed, in the order of the arrays."""
         return tuple(str(d) for d in self.dataset["kxx"].dims if d != "speed")
@@ -165,12 +160,12 @@ class CoefficientTable:
 
     @property
     def constant(self) -> bool:
-        """Whether the coefficients hold at any speed, the tabulated ones being examples."""
+        """Return whether the coefficients hold at any speed, the tabulated ones being examples."""
         return assembly.CONSTANT in self.dataset.attrs
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What the reader of another program's file left out or took for granted."""
+        """Sentences on what the reader of another program's file left out or took for granted."""
         return tuple(str(self.dataset.attrs.get(assembly.NOTES, "")).splitlines())
 
     def with_speeds(self, speeds: ArrayLike) -> CoefficientTable:
@@ -206,7 +201,7 @@ class CoefficientTable:
 
     @property
     def converged(self) -> np.ndarray:
-        """Whether each point may be used, shape (..., n_speed)."""
+        """Return whether each point may be used, shape (..., n_speed)."""
         return np.asarray(self.dataset["status"].values == str(SolveStatus.CONVERGED), dtype=bool)
 
     def _matrices(self, kind: str) -> np.ndarray:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import datetime
 import hashlib
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,167 +13,31 @@ import numpy as np
 from ..errors import TableError
 from ..status import SolveStatus
 from .operating_point import kept_throughout
+from .table_format import (
+    ATTRIBUTES,
+    COEFFICIENTS,
+    CONSTANT,
+    CONVENTIONS,
+    DIMENSIONS,
+    FASTEST,
+    FREQUENCY,
+    FULL_COEFFICIENTS,
+    JOURNAL_UNKNOWNS,
+    LARGEST,
+    NOTES,
+    PAD_MATRICES,
+    SCALARS,
+    SLOWEST,
+    TABLE_VERSION,
+    TEXTS,
+    UNKNOWNS,
+    cf_attributes,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from .operating_point import FullCoefficients, OperatingPoint
-
-
-TABLE_VERSION = 1
-"""Format of the file; raised when older programs could misread it."""
-COEFFICIENTS = ("kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")
-DIMENSIONS = ("thermal_model", "radial_clearance", "speed")
-_FREQUENCY = "frequency_ratio"
-"""Dimension of the variables ``kxx_of_frequency`` ... ``cyy_of_frequency``, where given."""
-LARGEST = 1e20
-"""Of stiffness [N/m] and damping [N s/m]; beyond, their products would overflow."""
-_SLOWEST, FASTEST = 1e-6, 1e6
-"""Shaft speeds [rad/s]."""
-CONSTANT = "constant"
-"""Attribute of a table whose coefficients hold at any speed, not at the tabulated ones only."""
-CONSTANT_SPEEDS = tuple(1000.0 * (step + 1) * math.pi / 30.0 for step in range(20))
-"""Speeds at which constant coefficients are tabulated unless others are wanted [rad/s]."""
-NOTES = "notes"
-"""Attribute with what a reader left out or took for granted, a line each."""
-SIGNS = (
-    "K_ij = -dF_i/dx_j [N/m], C_ij = -dF_i/dv_j [N s/m], F the film's force on the journal;",
-    "first index: direction of the force, second: direction of the displacement or velocity.",
-)
-CONVENTIONS = (
-    "Frame: x along the static load on the journal, y 90 degrees ahead of x in the direction of",
-    "the shaft's rotation.",
-    *SIGNS,
-)
-"""Lines that every file in the load frame carries."""
-_NAMES = ("x", "y", "theta_x", "theta_y")
-
-
-def _full_attributes(kind: str, i: str, j: str) -> tuple[str, str]:
-    """Return the unit and description of one entry of the full K or C."""
-    power = 1 + (i in _NAMES[2:]) + (j in _NAMES[2:])
-    unit = {1: ("N m-1", "N s m-1"), 2: ("N", "N s"), 3: ("N m", "N m s")}[power][kind == "c"]
-    words = "stiffness" if kind == "k" else "damping"
-    return unit, f"{words} -dQ_{i}/d{j}{'' if kind == 'k' else '-dot'}, rotations included"
-
-
-ATTRIBUTES: dict[str, tuple[str, str]] = {
-    "thermal_model": ("1", "thermal model of the film"),
-    "radial_clearance": ("m", "radial clearance"),
-    "speed": ("rad s-1", "shaft speed"),
-    **{
-        f"k{i}{j}": ("N m-1", f"stiffness -dF{i}/d{j}, load frame (x along the static load)")
-        for i in "xy"
-        for j in "xy"
-    },
-    **{
-        f"c{i}{j}": ("N s m-1", f"damping -dF{i}/dv{j}, load frame (x along the static load)")
-        for i in "xy"
-        for j in "xy"
-    },
-    _FREQUENCY: ("1", "whirl frequency over shaft frequency"),
-    **{
-        f"k{i}{j}_of_frequency": ("N m-1", f"stiffness -dF{i}/d{j} over the whirl frequency")
-        for i in "xy"
-        for j in "xy"
-    },
-    **{
-        f"c{i}{j}_of_frequency": ("N s m-1", f"damping -dF{i}/dv{j} over the whirl frequency")
-        for i in "xy"
-        for j in "xy"
-    },
-    **{
-        f"{kind}_{i}_{j}": _full_attributes(kind, i, j)
-        for kind in "kc"
-        for i in _NAMES
-        for j in _NAMES
-    },
-    "unknown": ("1", "degree of freedom of journal or pad whose force it is"),
-    "other_unknown": ("1", "degree of freedom that moves"),
-    "full_stiffness": ("1", "stiffness over journal and pads [N/m, N/rad, N m/rad]"),
-    "full_damping": ("1", "damping over journal and pads [N s/m, N s/rad, N m s/rad]"),
-    "full_mass": ("1", "mass of the pads [kg, kg m, kg m2]"),
-    "critical_mass_synchronous": (
-        "kg",
-        "critical mass of kxx ... cyy alone, where the pads have motions of their own",
-    ),
-    "moment_x": ("N m", "moment of the film on the journal about x, through the mid-plane"),
-    "moment_y": ("N m", "moment of the film on the journal about y, through the mid-plane"),
-    "coefficient_frequency_ratio": (
-        "1",
-        "whirl frequency over shaft frequency at which kxx ... cyy hold; NaN: at any",
-    ),
-    "eccentricity_ratio": (
-        "1",
-        "eccentricity over radial clearance, the hot one where it is known",
-    ),
-    "attitude_angle": ("rad", "angle from the load line to the journal centre, with rotation"),
-    "load": ("N", "magnitude of the static load"),
-    "sommerfeld_number": ("1", "Sommerfeld number mu N L D (R/c)^2/W"),
-    "max_pressure": ("Pa", "maximum film pressure (gauge)"),
-    "max_temperature": ("K", "maximum film temperature"),
-    "mean_temperature": ("K", "mean film temperature"),
-    "shaft_temperature": ("K", "temperature of the shaft's surface"),
-    "hot_radial_clearance": ("m", "radial clearance when hot; NaN without thermal expansion"),
-    "hot_preload": ("1", "mean preload of lobes or pads when hot"),
-    "deflection": ("m", "largest elastic deflection of pads or bore; NaN where they are rigid"),
-    "reynolds_number": ("1", "largest local Reynolds number rho U h/mu of the film"),
-    "laminar_share": ("1", "part of the film's area that is laminar"),
-    "transitional_share": ("1", "part of the film's area between laminar and turbulent"),
-    "turbulent_share": ("1", "part of the film's area that is turbulent"),
-    "heat_imbalance": ("1", "heat unaccounted for over the dissipation; NaN if isothermal"),
-    "friction_force": ("N", "friction force on the shaft"),
-    "power_loss": ("W", "friction power"),
-    "side_flow": ("m3 s-1", "flow out of both ends"),
-    "min_film_thickness": ("m", "minimum film thickness"),
-    "critical_mass": ("kg", "critical mass per bearing; NaN without a threshold, see stability"),
-    "critical_mass_dimensionless": ("1", "critical mass M c omega^2/W"),
-    "whirl_frequency_ratio": ("1", "whirl frequency at the threshold over shaft frequency"),
-    "residual": ("1", "last change of log viscosity, or relative force residual"),
-    "iterations": ("1", "iterations of the operating point"),
-    "status": ("1", "how the solution ended; numbers count only where it is 'converged'"),
-    "stability": ("1", "verdict on the rigid rotor's critical mass"),
-    "cavitation": ("1", "cavitation model"),
-}
-SCALARS = (
-    "eccentricity_ratio",
-    "attitude_angle",
-    "load",
-    "sommerfeld_number",
-    "max_pressure",
-    "max_temperature",
-    "mean_temperature",
-    "shaft_temperature",
-    "hot_radial_clearance",
-    "hot_preload",
-    "deflection",
-    "reynolds_number",
-    "laminar_share",
-    "transitional_share",
-    "turbulent_share",
-    "heat_imbalance",
-    "friction_force",
-    "power_loss",
-    "side_flow",
-    "min_film_thickness",
-    "critical_mass",
-    "critical_mass_dimensionless",
-    "whirl_frequency_ratio",
-    "coefficient_frequency_ratio",
-    "residual",
-)
-FULL_COEFFICIENTS = tuple(f"{kind}_{i}_{j}" for kind in "kc" for i in _NAMES for j in _NAMES)
-"""K and C over displacements and rotations, row by row: ``k_x_x`` ... ``c_theta_y_theta_y``."""
-_TEXTS = ("status", "stability", "cavitation")
-UNKNOWNS = ("unknown", "other_unknown")
-"""Dimensions of the matrices over journal and pads: force of the first, motion of the second."""
-PAD_MATRICES = ("full_stiffness", "full_damping", "full_mass")
-
-
-def cf_attributes(name: str) -> dict[str, str]:
-    """Return ``units`` and ``long_name`` of a table's variable."""
-    units, long_name = ATTRIBUTES[name]
-    return {"units": units, "long_name": long_name}
 
 
 def from_points(points: Sequence[OperatingPoint], attributes: dict[str, Any]) -> xr.Dataset:
@@ -288,13 +151,13 @@ def _with_frequency(
         ]
     )
     values = np.moveaxis(values.reshape(*shape, ratios.size, 8), -2, -3)
-    dimensions = (*DIMENSIONS[:-1], _FREQUENCY, DIMENSIONS[-1])
+    dimensions = (*DIMENSIONS[:-1], FREQUENCY, DIMENSIONS[-1])
     names = [f"{name}_of_frequency" for name in COEFFICIENTS]
     variables = {
         name: (dimensions, values[..., i], cf_attributes(name)) for i, name in enumerate(names)
     }
     return dataset.assign(variables).assign_coords(
-        {_FREQUENCY: (_FREQUENCY, ratios, cf_attributes(_FREQUENCY))}
+        {FREQUENCY: (FREQUENCY, ratios, cf_attributes(FREQUENCY))}
     )
 
 
@@ -352,7 +215,7 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
         column = [getattr(p, name) for p in points]
         columns[name] = np.array([np.nan if v is None else float(v) for v in column])
     columns["iterations"] = np.array([int(p.iterations) for p in points])
-    for name in _TEXTS:
+    for name in TEXTS:
         column = [getattr(p, name) for p in points]
         columns[name] = _text(["" if v is None else v for v in column])
     return columns
@@ -360,7 +223,7 @@ def _columns(points: Sequence[OperatingPoint]) -> dict[str, np.ndarray]:
 
 def _is_journal_only(full: FullCoefficients | None) -> bool:
     """Return whether there are displacements and rotations of the journal, and no pads."""
-    return full is not None and full.names == _NAMES
+    return full is not None and full.names == JOURNAL_UNKNOWNS
 
 
 def _full_row(point: OperatingPoint) -> np.ndarray:
@@ -477,10 +340,10 @@ def _check_numbers(dataset: xr.Dataset, source: str | Path | None) -> None:
     speed = np.asarray(dataset["speed"].values, dtype=float)
     if not speed.size or not np.all(np.isfinite(speed)) or np.any(np.diff(speed) <= 0.0):
         raise TableError("speeds must be finite and ascend", source=source, key="speed")
-    if speed[0] < _SLOWEST or speed[-1] > FASTEST:
+    if speed[0] < SLOWEST or speed[-1] > FASTEST:
         raise TableError(
-            f"speeds must be {_SLOWEST:g} to {FASTEST:g} rad/s", source=source, key="speed",
-            value=float(speed[0] if speed[0] < _SLOWEST else speed[-1]),
+            f"speeds must be {SLOWEST:g} to {FASTEST:g} rad/s", source=source, key="speed",
+            value=float(speed[0] if speed[0] < SLOWEST else speed[-1]),
         )  # fmt: skip
     clearance = np.asarray(dataset["radial_clearance"].values, dtype=float)
     unknown = clearance.size == 1 and np.isnan(clearance[0])

@@ -37,7 +37,7 @@ _LARGEST_GROWTH = 2.0
 _LARGEST_STEP = 0.1
 """Over the duration."""
 
-Conditions = Callable[[float], tuple[Case, float]]
+_Conditions = Callable[[float], tuple[Case, float]]
 """Case and speed [rad/s] at a time [s]."""
 
 
@@ -59,7 +59,7 @@ class TransientStep:
 
 
 def solve_transient(
-    conditions: Conditions,
+    conditions: _Conditions,
     storage: HeatStorage,
     duration: float,
     *,
@@ -98,7 +98,7 @@ class _March:
 
     def __init__(
         self,
-        conditions: Conditions,
+        conditions: _Conditions,
         storage: HeatStorage,
         duration: float,
         tolerance: float,

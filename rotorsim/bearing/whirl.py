@@ -34,7 +34,7 @@ class WhirlThreshold:
 
 
 @dataclass(frozen=True)
-class WhirlThresholds:
+class _WhirlThresholds:
     """`WhirlThreshold` for a whole array of operating points; NaN where there is no threshold.
 
     `stability` holds the values of `Stability`, and an empty string where a coefficient is NaN.
@@ -49,7 +49,7 @@ class WhirlThresholds:
 
 @dataclass(frozen=True)
 class _RouthCoefficients:
-    """What Routh and Hurwitz ask of m s^2 + C s + K, for any mass.
+    """Conditions of Routh and Hurwitz on m s^2 + C s + K, for any mass.
 
     Stable if and only if `trace_damping`, `cross` and `det_stiffness` are all above zero and
     ``det_damping * equivalent_stiffness > mass * det_shifted``.
@@ -69,7 +69,7 @@ class _RouthCoefficients:
 
     @property
     def may_be_stable(self) -> Booleans:
-        """Whether the conditions without the mass hold."""
+        """Return whether the conditions without the mass hold."""
         return (self.trace_damping > 0.0) & (self.cross > 0.0) & (self.det_stiffness > 0.0)
 
     def stable(self, mass: ArrayLike) -> Booleans:
@@ -108,10 +108,7 @@ def routh_coefficients(stiffness: ArrayLike, damping: ArrayLike) -> _RouthCoeffi
 
 
 def _verdicts(routh: _RouthCoefficients) -> NDArray[np.str_]:
-    """Return `Stability` of every point.
-
-    With K_e > 0 only the signs of det C and det(K - K_e I) count.
-    """
+    """Return `Stability` of every point; with K_e > 0 two determinants' signs decide."""
     det_c, shifted = np.broadcast_arrays(routh.det_damping, routh.det_shifted)
     possible = routh.may_be_stable
     verdict = np.full(np.shape(possible), str(Stability.ALWAYS_UNSTABLE), dtype="U18")
@@ -131,7 +128,7 @@ def rigid_thresholds(
     *,
     load: ArrayLike | None = None,
     radial_clearance: ArrayLike | None = None,
-) -> WhirlThresholds:
+) -> _WhirlThresholds:
     """Return the critical mass and whirl frequency of a rigid rotor over whole arrays.
 
     stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
@@ -175,7 +172,7 @@ def rigid_thresholds(
         )
         dimensionless = mass * scale
     shape = np.broadcast_shapes(np.shape(mass), np.shape(ratio), np.shape(dimensionless))
-    return WhirlThresholds(
+    return _WhirlThresholds(
         stability=np.broadcast_to(verdict, shape),
         critical_mass=np.broadcast_to(mass, shape),
         whirl_frequency=np.broadcast_to(whirl, shape),
@@ -293,18 +290,6 @@ class FrequencyScan:
         film = np.concatenate([self.curve(_RATIOS[:1]), film])
         phase = np.unwrap(np.angle(np.linalg.det(film)))
         return round((2.0 * np.pi - (phase[-1] - phase[0])) / np.pi)
-
-    def least_damped(self, mass: float, count: int = 4) -> Array:
-        """Return frequencies [rad/s] near which det(A - M nu^2) is smallest.
-
-        First guesses of modes.
-        """
-        frequency = self.speed * _FINE
-        matrices = self.curve(_FINE) - mass * frequency[:, None, None] ** 2 * np.eye(2)
-        values = np.linalg.svd(matrices, compute_uv=False)
-        off = values[:, 1] / values[:, 0]
-        inner = np.flatnonzero((off[1:-1] < off[:-2]) & (off[1:-1] < off[2:])) + 1
-        return frequency[inner[np.argsort(off[inner])][:count]]
 
     def _crossings(self) -> list[tuple[float, float]]:
         """Return masses at which an eigenvalue is i nu, ascending, and nu over the speed."""

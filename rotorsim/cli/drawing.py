@@ -69,10 +69,7 @@ class _Canvas:
 
 
 def bearing_in_text(bearing: Bearing) -> str:
-    """Return the cross-section of a bearing, load down: journal, bore or pads, grooves.
-
-    Radii are to scale among each other but the film, which is magnified.
-    """
+    """Return the cross-section of a bearing, load down, to scale but for the magnified film."""
     from ..film.mesh import groove_edges, mid_thickness  # loads compiled code
 
     radius = bearing.journal_radius

@@ -43,7 +43,7 @@ _OTHER_SUFFIXES = {*(f".{end}" for end in ("md", "yaml", "yml", "ini", "cfg", "x
 
 
 def _shipped_names(incomplete: str) -> list[str]:
-    """Shipped scenarios whose names begin so, for the shell's completion."""
+    """Return the shipped scenarios whose names begin so, for the shell's completion."""
     return [name for name in shipped_scenarios() if name.startswith(incomplete)]
 
 
@@ -56,7 +56,7 @@ class _NewRotor(StrEnum):
 
 
 def _export_formats(text: str) -> list[str]:
-    """Formats from words between commas, each once."""
+    """Return the formats from words between commas, each once."""
     from ..files.formats import FORMATS
 
     words = [word.strip().lower() for word in text.split(",")]
@@ -69,7 +69,7 @@ def _export_formats(text: str) -> list[str]:
 def _load_directions(
     text: str | None, table: Path, kinds: list[str]
 ) -> tuple[float | None, float | None]:
-    """``--load-direction`` [rad] for reading `table` and for writing: whichever is ROSS's."""
+    """Return ``--load-direction`` [rad] to read `table` and to write, whichever is ROSS's."""
     if text is None:
         return None, None
     from ..units import parse_quantity
@@ -326,7 +326,7 @@ def _scenario_text(
     title: str, profile: _Profile, load: str | None, eccentricity: float | None,
     iso_vg: float | None, rotor: _NewRotor = _NewRotor.RIGID,
 ) -> str:  # fmt: skip
-    """TOML text of a new scenario."""
+    """Return the TOML text of a new scenario."""
     if load is not None and eccentricity is not None:
         raise InputError("give a load or an eccentricity ratio, not both", key="--load")
     parts = re.split(r"^#: (\w+)\n", _template("scenario"), flags=re.MULTILINE)

@@ -178,7 +178,7 @@ def computed_table(
     workers: int | None = None,
     scheduler: str | None = None,
 ) -> tuple[list[OperatingPoint], CoefficientTable]:
-    """Points and table of `scenario`, saved to `path`; a journal next to it until then.
+    """Return the points and table of `scenario`, saved to `path`; a journal next to it until then.
 
     A table there that agrees is left as it is. While points have failed the journal stays, to be
     resumed from, and so does an older table without such points.
@@ -227,7 +227,7 @@ def computed_table(
 
 
 def _table_at(path: Path) -> CoefficientTable | None:
-    """The table there, if a usable one is."""
+    """Return the table there, if a usable one is."""
     from ..bearing.table import CoefficientTable
 
     with suppress(TableError):
@@ -249,7 +249,7 @@ def _report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
     return INCOMPLETE if bad else DONE
 
 
-MeasuredOption = Annotated[
+_MeasuredOption = Annotated[
     Path | None,
     option("--measured", "FILE", "CSV of measured points, drawn over the curves.", "none"),
 ]
@@ -259,7 +259,7 @@ def run(
     output: Output,
     scenario: ScenarioArgument,
     folder: OutputFolder = Path(),
-    measured: MeasuredOption = None,
+    measured: _MeasuredOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:
@@ -300,7 +300,7 @@ def run(
 
 
 def _compiled_before() -> bool:
-    """Whether an earlier run left compiled code in the cache."""
+    """Return whether an earlier run left compiled code in the cache."""
     import os
 
     folder = Path(__file__).parents[1] / "film" / "__pycache__"
@@ -337,7 +337,7 @@ def report(
     pdf: Annotated[
         bool, typer.Option("--pdf", help="Print it as PDF too (needs Chromium, Chrome or Edge).")
     ] = False,
-    measured: MeasuredOption = None,
+    measured: _MeasuredOption = None,
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:

@@ -131,7 +131,8 @@ def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -
     last = results[next(reversed(results))]
     motion, moved = None, {}
     if last.description.orbit is not None:
-        from ..study.machine_motion import motion_document, simulate
+        from ..study.machine_motion import simulate
+        from ..study.motion_results import motion_document
 
         output.note("motion in time")
         motion = simulate(last.description, result=last)
@@ -220,7 +221,7 @@ def machine_limit_cycles(output: Output, path: Path) -> int:
     from ..files.machine import load_machine
     from ..show.figures.orbits import branch_plot
     from ..show.job import save_figures
-    from ..study.machine_motion import branch_document, limit_cycles
+    from ..study.limit_cycles import branch_document, limit_cycles
 
     loaded = load_machine(path)
     branch = limit_cycles(loaded)
@@ -242,7 +243,7 @@ def machine_limit_cycles(output: Output, path: Path) -> int:
 
 
 def _say_motion(output: Output, motion: Motion, files: list[Path]) -> int:
-    from ..study.machine_motion import motion_document
+    from ..study.motion_results import motion_document
 
     document = motion_document(motion)
     rows = [
@@ -310,8 +311,8 @@ def _analysed(output: Output, path: Path, workers: int | None) -> dict[str, Mach
 def analysed(
     output: Output, loaded: MachineFile, workers: int | None, models: Sequence[str] | None = None
 ) -> dict[str, MachineResult]:
-    """Machine solved with some of its thermal models, with progress."""
-    from ..study.machine import analyse_machine, thermal_models
+    """Solve a machine with some of its thermal models, with progress."""
+    from ..study.machine_analysis import analyse_machine, thermal_models
 
     models = models or thermal_models(loaded)
     total = len(models) * len(loaded.bearings) * len(loaded.operating.speeds)
@@ -336,7 +337,7 @@ def _closing(
 
 
 def is_machine(path: Path) -> bool:
-    """Whether the file at `path` describes a machine."""
+    """Return whether the file at `path` describes a machine."""
     from ..files.machine import is_machine as described
 
     return described(path)

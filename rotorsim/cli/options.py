@@ -41,7 +41,7 @@ def option(
     panel: str | None = None,
     **more: Any,
 ) -> Any:
-    """Option of typer: its names with blanks between, its help, and what it is by default."""
+    """Return an option of typer from its names with blanks between, its help and its default."""
     return typer.Option(
         *names.split(), metavar=metavar, help=text, show_default=default, rich_help_panel=panel,
         **more,
@@ -175,7 +175,7 @@ def ask_figure_files(formats: str | None, width: str | None, font: float | None)
 def asked_scenario(
     scenario: Scenario, clearance: str | None, load: str | None, supply_temperature: str | None
 ) -> Scenario:
-    """Scenario with what the options ask for, which it need not list."""
+    """Return the scenario with what the options ask for, which it need not list."""
     from ..units import parse_quantity
 
     changes = {}
@@ -198,13 +198,13 @@ def asked_scenario(
 
 
 def wanted_cases(scenario: Scenario, model: str | None) -> list[Case]:
-    """Cases of `scenario` that the option ``--model`` leaves."""
+    """Return the cases of `scenario` that the option ``--model`` leaves."""
     models = scenario.thermal_models if model is None else (model,)
     return [scenario.case(one, kind) for kind in models for one in scenario.radial_clearances]
 
 
 def wanted_clearance(scenario: Scenario, text: str) -> float:
-    """Clearance [m] of ``--clearance``, which the scenario must list."""
+    """Return the clearance [m] of ``--clearance``, which the scenario must list."""
     from ..units import parse_quantity
 
     value = parse_quantity(text, "length", key="--clearance", example="100 um")
@@ -275,7 +275,7 @@ def check_folder(folder: Path) -> None:
 def given_table(
     output: Output, path: Path, bearing: str | None = None, load_direction: float | None = None
 ) -> CoefficientTable:
-    """Table at `path`; says what its reader left out or took for granted."""
+    """Return the table at `path`, and say what its reader left out or took for granted."""
     from ..files.formats import read_table
 
     table = read_table(path, bearing=bearing, load_direction=load_direction)
@@ -286,7 +286,7 @@ def given_table(
 
 @contextmanager
 def cluster(address: str | None, output: Output) -> Iterator[Executor | None]:
-    """Executor on the Dask scheduler at `address`; None where there is no address."""
+    """Return the executor on the Dask scheduler at `address`; None where there is no address."""
     if address is None:
         yield None
         return
@@ -335,10 +335,10 @@ def _workers_awaited(client: Any, address: str, output: Output) -> Iterator[None
 
 
 def table_path(scenario: Path, folder: Path) -> Path:
-    """``coefficients/NAME.nc`` in `folder`."""
+    """Return ``coefficients/NAME.nc`` in `folder`."""
     return folder / "coefficients" / f"{scenario.stem}.nc"
 
 
 def journal_path(table: Path) -> Path:
-    """Journal of the sweep that makes `table`, next to it."""
+    """Return the journal of the sweep that makes `table`, next to it."""
     return table.with_name(table.name + ".journal")

@@ -141,7 +141,7 @@ def _coefficients(
     bearing: str | None,
     workers: int | None,
 ) -> CoefficientTable | None:
-    """Table for linear coefficients; a nonlinear film needs none."""
+    """Return the table for linear coefficients; a nonlinear film needs none."""
     from ..model.orbit import OrbitForce
     from ..study.inputs import differences
 

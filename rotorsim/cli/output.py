@@ -1,4 +1,4 @@
-"""Where words go: results to stdout, progress and complaints to stderr; and the exit codes."""
+"""Results to stdout, progress and complaints to stderr; and the exit codes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _DRAWING = ("run", "stability", "orbit", "control", "transient", "study")
 
 
 def as_typed(path: Path) -> str:
-    """Path as it must be typed after a command: in quotes where it holds spaces and the like."""
+    """Return a path as it is typed after a command: in quotes where it holds spaces."""
     return subprocess.list2cmdline([str(path)]) if os.name == "nt" else shlex.quote(str(path))
 
 
@@ -184,7 +184,7 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
 
 
 def _usual_units() -> str:
-    """Units of the user's configuration; SI where there is none.
+    """Return the units of the user's configuration; SI where there is none.
 
     Raises InputError: The file is no TOML, or names something else.
     """
@@ -212,7 +212,7 @@ def _usual_units() -> str:
 
 
 def _naming_machine(error: Exception, options: dict[str, Any]) -> Exception:
-    """Error with the machine file that the command was given, where a key is all it names."""
+    """Return the error with the machine file of the command, where a key is all it names."""
     from pathlib import Path
 
     if not isinstance(error, InputError) or error.source or str(error.key or "-").startswith("-"):

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from ..arguments import ascending_values
 from ..errors import InputError
 from ..file_kinds import FileKind, kind_of, sentence
 from .film_commands import computed_table
@@ -44,7 +44,6 @@ if TYPE_CHECKING:
 
 
 _MAP, _TOLERANCES = "Map over two inputs", "Tolerances"
-_MOST_VALUES = 1000
 _SHORT = {"clearance": "radial_clearance", "applied_load": "load"}
 """Other names of inputs, to those of a scenario's ``[tolerances]``."""
 
@@ -218,7 +217,7 @@ def stability(
     workers: WorkersOption = None,
     scheduler: SchedulerOption = None,
 ) -> int:
-    """Where a rotor is stable: critical mass, modes over speed, thresholds, maps, tolerances.
+    """Find where a rotor is stable: critical mass, modes over speed, thresholds, maps, tolerances.
 
     Example: rotorsim stability coefficients/dal.nc --mass "1200 kg"
 
@@ -292,7 +291,7 @@ def stability(
 
 @dataclass(frozen=True)
 class _Work:
-    """What the analyses share."""
+    """Options that the analyses share."""
 
     output: Output
     source: Path
@@ -306,7 +305,7 @@ class _Work:
     speeds: str | None
 
     def table(self) -> CoefficientTable | None:
-        """Table at the source; None where it is no table.
+        """Return the table at the source; None where it is no table.
 
         Raises InputError: It is neither a table nor a scenario, or not as the options say.
         """
@@ -348,7 +347,7 @@ class _Work:
 
 
 def _axes(texts: dict[str, tuple[str | None, str | None]]) -> dict[str, list[float] | None]:
-    """Values of both axes by dimension; None: left to the map."""
+    """Return the values of both axes by dimension; None: left to the map."""
     found: dict[str, list[float] | None] = {}
     for key, (text, values) in texts.items():
         if text is None:
@@ -437,7 +436,7 @@ def _machine_plane(
 
 
 def _named_texts(texts: Sequence[str] | None, key: str) -> dict[str, str]:
-    """``NAME=VALUE`` by name."""
+    """Return the values of ``NAME=VALUE`` texts by name."""
     found = {}
     for text in texts or ():
         name, sign, value = (part.strip() for part in text.partition("="))
@@ -563,7 +562,7 @@ def _report_failed(output: Output, bad: int, total: int) -> int:
 
 
 def _source(work: _Work) -> tuple[Scenario | None, CoefficientTable | None]:
-    """The scenario, or that of the table where it says; the table, if it is one."""
+    """Return the scenario, or that of the table where it says; the table, if it is one."""
     from ..files.scenario import load_scenario
 
     table = work.table()
@@ -571,7 +570,7 @@ def _source(work: _Work) -> tuple[Scenario | None, CoefficientTable | None]:
 
 
 def _solved(work: _Work, scenario: Scenario | None) -> CoefficientTable:
-    """Table of a scenario, solved."""
+    """Return the table of a scenario, solved."""
     assert scenario is not None
     path = table_path(work.source, Path())
     _, table = computed_table(work.output, scenario, path, work.workers, work.scheduler)
@@ -580,7 +579,7 @@ def _solved(work: _Work, scenario: Scenario | None) -> CoefficientTable:
 
 
 def _scenario_of(work: _Work, table: CoefficientTable) -> Scenario | None:
-    """Scenario that a table was made from, where it says."""
+    """Return the scenario that a table was made from, where it says."""
     from ..files.scenario import Scenario
 
     text = table.dataset.attrs.get("scenario")
@@ -618,29 +617,15 @@ def _read_values(
     """Return the ascending values [SI] of ``--x-values`` and ``--y-values``."""
     from ..units import parse_quantity
 
-    def value(word: str) -> float:
+    def value(word: object) -> float:
         if kind is not None:
             return parse_quantity(word, kind, key=key, example=example)
         try:
-            return float(word)
+            return float(str(word))
         except ValueError:
             raise InputError("must be plain numbers", key=key, value=word) from None
 
-    parts = [part.strip() for part in text.split(":")]
-    if len(parts) == 3:
-        if not parts[2].isascii() or not parts[2].isdigit() or not 2 <= int(parts[2]) <= 1000:
-            message = f"the count must be a whole number from 2 to {_MOST_VALUES}"
-            raise InputError(message, key=key, value=text)
-        first, last = (value(part) for part in parts[:2])
-        step = (last - first) / (int(parts[2]) - 1)
-        values = [first + i * step for i in range(int(parts[2]) - 1)] + [last]
-    elif len(parts) == 1:
-        values = [value(part.strip()) for part in text.split(",")]
-    else:
-        message = f'must be a list "{example}, ..." or "start : stop : count"'
-        raise InputError(message, key=key, value=text)
-    if len(values) > _MOST_VALUES or any(b <= a for a, b in pairwise(values)):
-        raise InputError(f"must ascend, at most {_MOST_VALUES} values", key=key, value=text)
+    values = ascending_values(text, value, key, example)
     if values[0] <= 0.0 and not any_sign:
         raise InputError("must be above 0", key=key, value=text)
     return values
@@ -658,7 +643,7 @@ def _wanted_rotor(
     scenario: Scenario | None, mass: float | None, shaft_stiffness: str | None,
     file: Path | None, nodes: str | None, dofs: int | None,
 ) -> Rotor | None:  # fmt: skip
-    """Rotor of the options, else the scenario's; None without either."""
+    """Return the rotor of the options, else the scenario's; None without either."""
     from ..files.rotors import load_rotor
     from ..rotor import Rotor
 
@@ -681,7 +666,7 @@ def _wanted_rotor(
 
 
 def _jeffcott(own: Rotor | None, mass: float | None, stiffness: float) -> Rotor:
-    """Jeffcott rotor of the options: `mass` is the disc's, what is not given the scenario's."""
+    """Return the Jeffcott rotor of the options, `mass` the disc's; the rest is the scenario's."""
     from ..rotor import Rotor
 
     parts = {} if own is None else dict(own.parameters)
@@ -693,7 +678,7 @@ def _jeffcott(own: Rotor | None, mass: float | None, stiffness: float) -> Rotor:
 
 
 def _node_list(text: str | None) -> tuple[int, ...] | None:
-    """Node numbers of ``--bearing-nodes``."""
+    """Return the node numbers of ``--bearing-nodes``."""
     if text is None:
         return None
     words = [word.strip() for word in text.split(",")]
@@ -707,7 +692,7 @@ def _node_list(text: str | None) -> tuple[int, ...] | None:
 def _wanted_tolerances(
     scenario: Scenario, texts: Sequence[str] | None, samples: int | None
 ) -> ToleranceSettings:
-    """The scenario's tolerances with those of the options."""
+    """Return the scenario's tolerances with those of the options."""
     from ..model.tolerances import KINDS, ToleranceSettings, parse_spread
 
     found: dict[str, Any] = {}

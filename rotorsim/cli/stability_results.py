@@ -26,7 +26,7 @@ _QUANTILES = (0.05, 0.5, 0.95)
 
 
 def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
-    """One curve for JSON."""
+    """Return one curve for JSON."""
     row = {
         **curve.choices,
         **{
@@ -43,7 +43,7 @@ def curve_row(curve: StabilityCurve, modes: Campbell | None) -> dict[str, Any]:
 
 
 def modes_table(curve: StabilityCurve, modes: Campbell) -> Table:
-    """The least stable oscillating mode over speed."""
+    """Return the least stable oscillating mode over speed."""
     found, head = modes.branches, ["rpm", *_MODE_HEADS]
     head.insert(-1, "growth 1/s")
     rows = []
@@ -58,7 +58,7 @@ _MODE_HEADS = ("mode", "Hz", "f/rev", "damping ratio", "log decrement", "whirl")
 
 
 def _mode_cells(found: Modes, i: int, k: int) -> list[str]:
-    """Branch k at speed i."""
+    """Return the cells of branch k at speed i."""
     frequency = float(found.damped_frequency[i, k])
     return [
         str(k + 1), number(frequency / (2.0 * math.pi)),
@@ -69,7 +69,7 @@ def _mode_cells(found: Modes, i: int, k: int) -> list[str]:
 
 
 def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
-    """Every branch at the highest speed."""
+    """Return every branch at the highest speed."""
     found = modes.branches
     rows = [_mode_cells(found, -1, k) for k in range(found.eigenvalues.shape[1])]
     title = f"Modes at {found.parameter[-1] * RPM:.0f} rpm: {curve.title}"
@@ -77,7 +77,7 @@ def branches_table(curve: StabilityCurve, modes: Campbell) -> Table:
 
 
 def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell]) -> Table:
-    """Threshold speeds of all curves, with the whirl ratio at each."""
+    """Return the threshold speeds of all curves, with the whirl ratio at each."""
     table = grid("Threshold speeds", "bearing", "rpm", "whirl Hz", "whirl ratio", "above it")
     for curve, found in zip(curves, modes, strict=True):
         if not found.thresholds:
@@ -96,7 +96,7 @@ def threshold_table(curves: Sequence[StabilityCurve], modes: Sequence[Campbell])
 
 
 def plane_document(plane: Plane) -> dict[str, Any]:
-    """A map for JSON."""
+    """Return a map for JSON."""
     names = ("mass_margin", "critical_mass", "whirl_frequency_ratio", "damped_frequency")
     error = plane.dataset["growth_rate"].attrs.get("interpolation_error")
     models = {
@@ -162,7 +162,7 @@ def _name(dimension: str) -> str:
 
 
 def _border_table(plane: Plane) -> Table:
-    """For some x: the y at which the verdict changes, interpolated linearly in the growth rate."""
+    """Return the y at which the verdict changes for some x, linear in the growth rate."""
     across, upwards = plane.quantities
     first, second = map(_name, plane.names)
     x, y = (np.asarray(plane.dataset[name].values, dtype=float) for name in (plane.x, plane.y))
@@ -185,12 +185,12 @@ def _border_table(plane: Plane) -> Table:
 
 
 def _short(value: float) -> str:
-    """Four digits, and all before the decimal point."""
+    """Return a number with four digits, and all before the decimal point."""
     return f"{value:.0f}" if abs(value) >= 1e3 else f"{value:.4g}"
 
 
 def study_document(study: ToleranceStudy) -> dict[str, Any]:
-    """A tolerance study for JSON."""
+    """Return a tolerance study for JSON."""
     outputs = study.samples.outputs
     return {
         "thermal_model": study.thermal_model,
@@ -221,7 +221,7 @@ def study_document(study: ToleranceStudy) -> dict[str, Any]:
 
 
 def study_tables(study: ToleranceStudy) -> list[RenderableType]:
-    """Distribution, probability, and what matters."""
+    """Return distribution, probability, and the inputs that matter."""
     said = [study.thermal_model]
     if study.radial_clearance is not None:
         said.append(QUANTITIES["radial_clearance"].said(study.radial_clearance))

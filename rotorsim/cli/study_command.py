@@ -25,7 +25,7 @@ _INPUTS = {
     "thermal.supply_temperature": QUANTITIES["supply_temperature"],
     "lubricant.viscosity": Quantity("", "viscosity", "mPa s", 1e3),
 }
-"""How inputs are shown; others in SI."""
+"""Units in which inputs are shown; others in SI."""
 
 if TYPE_CHECKING:
     from ..study.designs import Study
@@ -88,7 +88,7 @@ def study(
 
 
 def _parts(found: Study) -> list[Any]:
-    """Designs that no other beats, and what the study cost."""
+    """Return the designs that no other beats, and what the study cost."""
     from .tables import grid
 
     inputs = [

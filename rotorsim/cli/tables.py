@@ -43,7 +43,7 @@ _COLUMNS = (
 
 
 _SMALL = QUANTITIES["radial_clearance"]
-"""How small lengths are shown."""
+"""Unit of small lengths."""
 
 
 def _head(symbol: str, unit: str) -> str:
@@ -51,7 +51,7 @@ def _head(symbol: str, unit: str) -> str:
 
 
 def grid(title: str, *columns: str, rows: Iterable[Iterable[RenderableType]] = ()) -> Table:
-    """Table: the first column to the left, the others to the right.
+    """Return a table: the first column to the left, the others to the right.
 
     A column without a name holds remarks, which wrap; numbers do not.
     """
@@ -76,7 +76,7 @@ def grid(title: str, *columns: str, rows: Iterable[Iterable[RenderableType]] = (
 
 
 def points_tables(points: Sequence[OperatingPoint]) -> Iterator[Table]:
-    """One table for each thermal model and clearance, one line for each speed."""
+    """Return a table for each thermal model and clearance, a line for each speed."""
     for curve, group in itertools.groupby(
         points, lambda point: (point.thermal_model, point.radial_clearance)
     ):
@@ -89,7 +89,7 @@ def points_tables(points: Sequence[OperatingPoint]) -> Iterator[Table]:
 
 
 def point_table(point: OperatingPoint) -> Table:
-    """One operating point in full."""
+    """Return one operating point in full."""
     table = grid(f"{point_title(point)}" + (": converged" if point.converged else ""), "", "", "")
     for row in point_rows(point):
         table.add_row(*row)
@@ -100,7 +100,7 @@ def point_table(point: OperatingPoint) -> Table:
 
 
 def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[RenderableType]:
-    """Inputs, derived numbers at the highest speed, and the amount of work."""
+    """Return the inputs, derived numbers at the highest speed, and the amount of work."""
     yield bearing_in_text(scenario.bearing)
     yield _inputs(scenario)
     numbers = ("sommerfeld", "reynolds", "taylor", "peclet", "nahme")
@@ -129,7 +129,7 @@ def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[Re
 
 
 def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
-    """Flow numbers with the viscosity at supply temperature and in the estimated warm film."""
+    """Return the flow numbers with the viscosity at supply temperature and of the warm film."""
     heads = (_head("c", "µm"), _head("T", "°C"))
     rows = [
         [clearance, QUANTITIES["max_temperature"].text(case[temperature]),
@@ -165,7 +165,7 @@ _THRESHOLD = ("critical_mass", "critical_mass_dimensionless", "whirl_frequency_r
 
 
 def curve_table(curve: StabilityCurve) -> Table:
-    """One curve over speed.
+    """Return one curve over speed.
 
     The critical mass is a rigid rotor's: beside another rotor it would not be that rotor's limit.
     With tilting pads the last column is the growth rate that their coefficients, reduced at the
@@ -196,7 +196,7 @@ def curve_table(curve: StabilityCurve) -> Table:
 
 
 def _threshold_cells(curve: StabilityCurve, index: int) -> list[str]:
-    """Critical mass, dimensionless too, whirl ratio, and what they say of the mass."""
+    """Return the critical mass, dimensionless too, whirl ratio, and what they say of the mass."""
     mass = curve.critical_mass[index]
     verdict = str(curve.stability[index])
     said = _VERDICTS.get(verdict)
@@ -207,7 +207,7 @@ def _threshold_cells(curve: StabilityCurve, index: int) -> list[str]:
 
 
 def summary_table(curves: Sequence[StabilityCurve]) -> Table:
-    """Threshold speeds of all curves."""
+    """Return the threshold speeds of all curves."""
     rotor = curves[0].rotor if curves else ""
     title = rotor[:1].upper() + rotor[1:] or "Critical mass"
     table = grid(title, "bearing", "least M_crit kg", "threshold speeds rpm")
@@ -219,7 +219,7 @@ def summary_table(curves: Sequence[StabilityCurve]) -> Table:
 
 
 def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
-    """One line for each orbit (see `rotorsim.orbit.description.describe_orbit`)."""
+    """Return a table of orbits, a line each (`rotorsim.orbit.description.describe_orbit`)."""
     expected = any("eigenvalue_growth_rate" in row for row in rows)
     columns = ["model", "run", "speed", "turns", "eccentricity", "growth"]
     columns += ["expected", "outcome"] if expected else ["outcome"]
@@ -234,7 +234,7 @@ def orbit_table(rows: Sequence[Mapping[str, Any]]) -> Table:
 
 
 def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
-    """What each run came to: whirl, ellipse, least film; and what its force takes for granted."""
+    """Return whirl, ellipse and least film of each run, and what its force takes for granted."""
     lengths = (_head(name, "µm") for name in ("swing", "ellipse", "h_min"))
     table = grid("What they come to", "model", "whirl ratio", *lengths)
     notes = []
@@ -253,13 +253,13 @@ def orbit_details(rows: Sequence[Mapping[str, Any]]) -> list[Any]:
 
 
 _HEATED = ("load", "min_film_thickness", "max_pressure", "power_loss", "side_flow")
-"""What isothermal and THD are compared by."""
+"""Results by which isothermal and THD are compared."""
 _LEAST_WALL_SHARE = 0.005
 """Of the heat through the walls, from which on it is said."""
 
 
 def closing(said: Mapping[str, Any], results: Results) -> Iterator[RenderableType]:
-    """What was computed, what converged, headline results, where the files are."""
+    """Return what was computed, what converged, headline results, where the files are."""
     from ..study.measured import deviation_rows, deviations
 
     curves = results.curves
@@ -291,7 +291,7 @@ def closing(said: Mapping[str, Any], results: Results) -> Iterator[RenderableTyp
 
 
 def _heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> Table:
-    """Isothermal and THD at the highest speed, with what heating changes.
+    """Return isothermal and THD at the highest speed, with what heating changes.
 
     Beside a rotor that is not rigid no critical mass is shown.
     """
@@ -317,7 +317,7 @@ def _heating_table(rows: Sequence[Mapping[str, Any]], *, rigid: bool = True) -> 
 
 
 def _walls_lines(rows: Sequence[Mapping[str, Any]]) -> Iterator[str]:
-    """What leaves through bush and shaft instead of with the oil, where that is anything."""
+    """Return the heat that leaves through bush and shaft instead of with the oil, if any."""
     for row in rows:
         for model in _models(row):
             share = row[model]["wall_heat_share"]
@@ -347,7 +347,7 @@ def _percent(cold: float | None, hot: float | None) -> str:
 
 
 def _verdict_table(curves: Sequence[StabilityCurve]) -> Table:
-    """Whether the rotor is stable at the highest speed, and where that changes."""
+    """Return whether the rotor is stable at the highest speed, and where that changes."""
     rotor = curves[0].rotor
     title = "Stability" + (f", {rotor}" if rotor else "")
     top = f"at {curves[0].speed[-1] * RPM:.0f} rpm"
@@ -359,7 +359,7 @@ def _verdict_table(curves: Sequence[StabilityCurve]) -> Table:
 
 
 def _files_table(files: Mapping[str, Any]) -> Table:
-    """Where everything is."""
+    """Return the files that were written."""
     table = grid("Files", "what", "where")
     table.columns[1].justify = "left"
     table.columns[1].overflow = "fold"

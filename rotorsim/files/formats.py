@@ -1,4 +1,4 @@
-"""Which formats there are, and from a file's name to its reader."""
+"""Formats of tables, and from a file's name to its reader."""
 
 from __future__ import annotations
 
@@ -6,22 +6,19 @@ import os
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..arguments import file_path
 from ..atomic import replacing, write_text
 from ..bearing.table import CoefficientTable
-from ..bearing.table_data import ATTRIBUTES, COEFFICIENTS, CONVENTIONS, SCALARS
+from ..bearing.table_format import ATTRIBUTES, COEFFICIENTS, CONVENTIONS, SCALARS
 from ..errors import TableError
 from ..file_kinds import SUFFIXES, FileKind, is_missing, kind_of, sentence
+from ..rows import RPM
 from . import ross
-from .ross import RPM, Curve, curves
-
-if TYPE_CHECKING:
-    from ..bearing.table import CoefficientTable
-
+from .curves import Curve, curves
 
 _WIDTH = 16
 

@@ -68,7 +68,7 @@ _ELEVATION = 0.01
 
 
 @dataclass(frozen=True)
-class RotorDrawing:
+class _RotorDrawing:
     """A shaft from its drawing, with the unbalances that it is given."""
 
     beam: Beam
@@ -116,7 +116,7 @@ def _beam(
     shear: bool = True,
     axial_force: Annotated[float, Quantity("force", "0 N", "any")] = 0.0,
     modal_damping: Annotated[float, Number(least=0.0, most=0.999)] = 0.0,
-) -> RotorDrawing:
+) -> _RotorDrawing:
     """Make a shaft from its sections and discs."""
     try:
         one_of(_ROTATIONS, rotation)
@@ -128,7 +128,7 @@ def _beam(
     )  # fmt: skip
     for i, entry in enumerate(unbalance):
         beam.check_place(entry.at, f"rotor.unbalance[{i}].at")
-    return RotorDrawing(beam, unbalance)
+    return _RotorDrawing(beam, unbalance)
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +163,7 @@ class MachineFile:
         A place is off the shaft, or two supports stand at one place or have one name.
     """
 
-    rotor: Annotated[RotorDrawing, Made({"beam": _beam})]
+    rotor: Annotated[_RotorDrawing, Made({"beam": _beam})]
     operating: MachineOperating
     title: Annotated[str, TitleEntry()] = ""
     support: tuple[SupportEntry, ...] = ()
@@ -299,10 +299,7 @@ class MachineFile:
                     place_named(self, place, f"control.{word}[{i}]")
 
     def with_parts(self, **parts: Any) -> MachineFile:
-        """Return machine with some of its parts replaced.
-
-        Bearings and tables are not read again.
-        """
+        """Return the machine with some parts replaced; bearings and tables are not read again."""
         bearings = parts.pop("bearings", self.bearings)
         other = replace(self, **parts)
         other.__dict__.update(bearings=bearings, tables=self.tables)

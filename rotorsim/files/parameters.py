@@ -1,4 +1,4 @@
-"""What of a machine may be varied by name: in maps, tolerances and sensitivities.
+"""Parameters of a machine, by name: for maps, tolerances and sensitivities.
 
 ``speed``, ``drive end.radial_clearance``, ``impeller.destabilising_stiffness``: a word of
 `PARAMETERS`, and before a dot whose it is.
@@ -9,20 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import ascending_values
 from ..errors import InputError
-from ..model.entries import nearest
+from ..model.entries import Quantity, nearest
 from ..model.tolerances import Spread, parse_spread
 from ..units import parse_quantity
 
 if TYPE_CHECKING:
     from .machine import MachineFile
-
-_MOST_VALUES = 1000
 
 
 @dataclass(frozen=True)
@@ -116,40 +114,17 @@ class Parameter:
             if not 0.0 < value < math.inf:
                 raise InputError(f"must be a factor, {kind.example} say", key=key, value=text)
             return value
-        value = parse_quantity(text, kind.quantity, key=key, example=kind.example)
-        if (kind.sign == "positive" and value <= 0.0) or (
-            kind.sign == "not_negative" and value < 0.0
-        ):
-            said = "above 0" if kind.sign == "positive" else "0 or more"
-            raise InputError(f"must be {said}", key=key, value=text)
-        return value
+        try:
+            return Quantity(kind.quantity, kind.example, kind.sign).read(text)
+        except InputError as error:
+            raise InputError(error.message, key=key, value=text) from None
 
     def values(self, given: object, key: str) -> list[float]:
-        """Return ascending values [SI]: a list of texts, ``"a, b, c"``, or ``"start : stop .
-
-        Count"``.
-        """
+        """Return ascending values [SI]: of texts, ``"a, b"``, or ``"start : stop : count"``."""
         if isinstance(given, Mapping):
             given = " : ".join(str(given.get(part, "")) for part in ("start", "stop", "count"))
-        if not isinstance(given, str):
-            parts = list(given) if isinstance(given, Sequence) else [given]
-        elif given.count(":") == 2:
-            first, last, count = (part.strip() for part in given.split(":"))
-            if not (count.isascii() and count.isdigit() and 2 <= int(count) <= _MOST_VALUES):
-                raise InputError(
-                    f"the count must be a whole number from 2 to {_MOST_VALUES}", key=key,
-                    value=given,
-                )  # fmt: skip
-            low, high = self.read(first, key), self.read(last, key)
-            if not low < high:
-                raise InputError("must ascend", key=key, value=given)
-            return np.linspace(low, high, int(count)).tolist()
-        else:
-            parts = given.split(",")
-        found = [self.read(part.strip() if isinstance(part, str) else part, key) for part in parts]
-        if len(found) > _MOST_VALUES or any(b <= a for a, b in pairwise(found)):
-            raise InputError(f"must ascend, at most {_MOST_VALUES} values", key=key, value=given)
-        return found
+        example = PARAMETERS[self.kind].example
+        return ascending_values(given, lambda text: self.read(text, key), key, example)
 
     def spread(self, text: object, key: str) -> Spread:
         """Return tolerance about the nominal value: ``"5 um"``, ``"10 %"``; see `parse_spread`."""

@@ -193,10 +193,7 @@ def _matlab_arrays(data: bytes) -> Iterator[tuple[str, NDArray[Any]]]:
 
 
 def _inflated(data: bytes) -> int:
-    """Return bytes of a MATLAB file when all of it is inflated.
-
-    No more of it than one block at a time.
-    """
+    """Return the bytes of a MATLAB file, all of it inflated block by block."""
     if not data.startswith(b"MATLAB 5.0"):
         return len(data)
     order = "<" if data[126:128] == b"IM" else ">"

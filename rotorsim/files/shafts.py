@@ -13,11 +13,11 @@ import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ..bearing import delimited
+from ..bearing import csv_cells
 from ..bearing.table import CoefficientTable
 from ..errors import InputError, TableError
 from ..units import parse_unit
-from . import ross
+from . import ross_rotor
 
 _KINDS = {
     "length": "length", "outer_diameter": "length", "inner_diameter": "length",
@@ -42,9 +42,9 @@ def machine_text(path: Path, title: str) -> tuple[str, Mapping[str, CoefficientT
     Raises InputError: The file is neither, or holds what a machine file cannot.
     """
     if path.suffix.lower() in (".toml", ".json"):
-        found = ross.read_rotor(path)
+        found = ross_rotor.read_rotor(path)
     elif path.suffix.lower() == ".csv":
-        found = ross.Drawing(*_sections(path))
+        found = ross_rotor.Drawing(*_sections(path))
     else:
         raise InputError(
             "must be a rotor saved by ROSS (.toml, .json) or a table of sections (.csv)",
@@ -53,7 +53,7 @@ def machine_text(path: Path, title: str) -> tuple[str, Mapping[str, CoefficientT
     return _text(found, title, path.name), found.tables
 
 
-def _text(drawing: ross.Drawing, title: str, source: str) -> str:
+def _text(drawing: ross_rotor.Drawing, title: str, source: str) -> str:
     length = sum(section["length"] for section in drawing.sections if "layer" not in section)
     lines = [f"# From {json.dumps(source)}.", *(f"# {note}" for note in drawing.notes)]
     lines += [f"title = {json.dumps(title)}", "", "[rotor]", 'kind = "beam"']
@@ -84,7 +84,8 @@ def _text(drawing: ross.Drawing, title: str, source: str) -> str:
 
 def _entries(table: Mapping[str, object]) -> list[str]:
     """Return lines of a TOML table; numbers get the unit of their key."""
-    return [f"{key} = {_value(value, ross.UNITS.get(key, ''))}" for key, value in table.items()]
+    units = ross_rotor.UNITS
+    return [f"{key} = {_value(value, units.get(key, ''))}" for key, value in table.items()]
 
 
 def _value(value: object, unit: str) -> str:
@@ -99,14 +100,14 @@ def _value(value: object, unit: str) -> str:
 
 def _sections(source: Path) -> tuple[list[dict[str, object]], list[dict[str, object]]]:
     """Return sections and discs of a table."""
-    lines, _ = delimited.cells(source, lambda names: {"length", "outer_diameter"} <= set(names),
+    lines, _ = csv_cells.cells(source, lambda names: {"length", "outer_diameter"} <= set(names),
                                _OTHER_NAMES)  # fmt: skip
     if len(lines) < 2:
         raise TableError(
             "needs a header with the columns length and outer_diameter, and a row for each section",
             source=source,
         )
-    named = [delimited.named(cell, _OTHER_NAMES) for cell in lines[0][1]]
+    named = [csv_cells.named(cell, _OTHER_NAMES) for cell in lines[0][1]]
     first = lines[1][1]
     known = [cell for (name, _), cell in zip(named, first, strict=False) if name in _KINDS and cell]
     in_row = bool(known) and all(_number(cell) is None for cell in known)

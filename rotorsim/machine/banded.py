@@ -39,7 +39,7 @@ class BandForm:
 
     @property
     def narrow(self) -> bool:
-        """Whether the band is worth while."""
+        """Return whether the band is worth while."""
         return 6 * self.width < self.place.size
 
     def entry(self, row: Indices, column: Indices) -> tuple[Indices, Indices]:

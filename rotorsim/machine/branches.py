@@ -57,7 +57,7 @@ class Modes:
 
     @property
     def undamped(self) -> Booleans:
-        """Whether the real part is below its own accuracy: the mode neither grows nor decays."""
+        """Return where the real part is below its own accuracy: neither growth nor decay."""
         return np.abs(self.eigenvalues.real) <= self.accuracy
 
     @property

@@ -105,10 +105,7 @@ def decrement_curve(
 
 
 def _critical_branch(branches: Modes, threshold: float | None) -> int:
-    """Return forward branch that is least stable at the threshold.
-
-    Else the one that is driven most.
-    """
+    """Return the forward branch that is least stable at the threshold, else driven most."""
     growth, values = branches.growth_rate, branches.parameter
     if threshold is not None and threshold <= values[-1]:
         at = int(np.abs(values - threshold).argmin())

@@ -100,10 +100,7 @@ class Journal:
         return self.capacity * self.radius * float(np.trapezoid(field**2 * radii, radii))
 
     def bow(self, z: Array) -> tuple[Array, Array]:
-        """Return displacement and slope of a free shaft bent by 1 rad over the journal, (n,).
-
-        Straight outside; the concave side is the positive one.
-        """
+        """Return displacement and slope of a free shaft bent by 1 rad over the journal, (n,)."""
         from_middle = z - self.at
         half = 0.5 * self.length
         inside = np.clip(from_middle, -half, half)

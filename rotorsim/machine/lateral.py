@@ -216,10 +216,7 @@ def lateral_checks(
 
 
 def _largest(speed: Array, values: Array, between: tuple[float, float]) -> float | None:
-    """Return largest known value between two speeds, their ends interpolated.
-
-    None: none is known.
-    """
+    """Return the largest known value between two speeds, ends interpolated; None: none known."""
     inside = (speed >= between[0]) & (speed <= between[1])
     known = np.isfinite(values)
     found = values[inside & known]
@@ -238,7 +235,7 @@ _ALIKE = 0.9
 
 
 @dataclass(frozen=True)
-class UnbalancePlane:
+class _UnbalancePlane:
     """An unbalance at one place.
 
     at : From the left end [m].
@@ -254,7 +251,7 @@ class UnbalancePlane:
 
 
 @dataclass(frozen=True)
-class UnbalanceCase:
+class _UnbalanceCase:
     """Unbalances that excite one mode.
 
     speed : At which the mode is critical, or the highest one where it is not [rad/s].
@@ -262,7 +259,7 @@ class UnbalanceCase:
 
     name: str
     speed: float
-    planes: tuple[UnbalancePlane, ...]
+    planes: tuple[_UnbalancePlane, ...]
 
     def applied(self, machine: Machine) -> Machine:
         """Return the machine with these unbalances and no others."""
@@ -282,7 +279,7 @@ def _residual_unbalance(mass: float, speed: float) -> float:
 
 def unbalance_cases(
     machine: Machine, found: Modes, loads: Mapping[int, float], speed: float, factor: float
-) -> tuple[UnbalanceCase, ...]:
+) -> tuple[_UnbalanceCase, ...]:
     """Return the unbalances for every mode that is critical within the speeds of `found`.
 
     machine : With positions of its rotor's nodes.
@@ -303,16 +300,16 @@ def unbalance_cases(
     cases = []
     for critical, branch in chosen:
         i = int(np.abs(branches.parameter - critical).argmin())
-        line = deflection(machine.rotor, branches.shapes[i, branch])
+        line = _deflection(machine.rotor, branches.shapes[i, branch])
         if any(_mac(line, other) > _ALIKE for other in deflections):
             continue
         deflections.append(line)
         planes = _planes(machine.rotor, line, loads, speed, factor)
-        cases.append(UnbalanceCase(f"mode {len(cases) + 1}", critical, planes))
+        cases.append(_UnbalanceCase(f"mode {len(cases) + 1}", critical, planes))
     return tuple(cases)
 
 
-def deflection(rotor: Rotor, shape: ComplexArray) -> Array:
+def _deflection(rotor: Rotor, shape: ComplexArray) -> Array:
     """Return a mode's deflection (n_nodes,) at its largest, in that plane."""
     motion = np.array([shape[[x, y]] for x, y in rotor.planes])
     largest = motion[np.abs(motion).max(axis=1).argmax()]
@@ -325,7 +322,7 @@ def _mac(a: Array, b: Array) -> float:
 
 def _planes(
     rotor: Rotor, line: Array, loads: Mapping[int, float], speed: float, factor: float
-) -> tuple[UnbalancePlane, ...]:
+) -> tuple[_UnbalancePlane, ...]:
     """Return planes at the antinodes, with the nearest journal loads or overhung mass."""
     at = np.array([node.position for node in rotor.nodes])
     supports = sorted(loads, key=lambda node: at[node])
@@ -346,7 +343,7 @@ def _planes(
             mass[nearest] += abs(load) / STANDARD_GRAVITY
     sign = np.sign(line[max(found, key=lambda i: abs(line[i]))])
     return tuple(
-        UnbalancePlane(
+        _UnbalancePlane(
             float(at[i]), factor * _residual_unbalance(mass[i], speed),
             0.0 if line[i] * sign > 0.0 else float(np.pi), mass[i],
         )

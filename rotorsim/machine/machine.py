@@ -117,7 +117,7 @@ class Machine:
 
     @property
     def frequency_dependent(self) -> bool:
-        """Whether a support's law is given over frequency."""
+        """Return whether a support's law is given over frequency."""
         return any(mount.support.frequency_dependent for mount in self.mounts)
 
     def matrices(self, speed: ArrayLike) -> Matrices:

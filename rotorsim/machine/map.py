@@ -49,7 +49,7 @@ class StabilityMap:
 
     @property
     def destabilised_by_heating(self) -> xr.DataArray | None:
-        """Where only heating makes the rotor unstable; None unless both models are tabulated."""
+        """True where only heating makes the rotor unstable; None without both models."""
         return self.dataset.get("destabilised_by_heating")
 
     def plane(self, first: str, second: str, **fixed: object) -> xr.Dataset:

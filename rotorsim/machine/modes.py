@@ -58,10 +58,7 @@ def modes(machine: Machine, speed: ArrayLike | None = None, count: int | None = 
 
 
 def machine_spectrum(machine: Machine, speeds: Array, count: int | None = None) -> MachineSpectrum:
-    """Return modes of a machine at any of its speeds: all, or the lowest `count` pairs.
-
-    See `modes`.
-    """
+    """Return the modes of a machine at any of its speeds: all, or the lowest `count` pairs."""
     if count is not None:
         return MachineSpectrum(machine, count)
     top = float(np.max(np.abs(speeds), initial=0.0))

@@ -171,10 +171,7 @@ def _peak(amplitude: Callable[[float], float], speeds: Array, values: Array, i: 
 def _half_power(
     amplitude: Callable[[float], float], speeds: Array, values: Array, top: Peak, side: int
 ) -> tuple[float | None, str]:
-    """Return nearest speed on one side where the amplitude falls to 0.707 of the peak.
-
-    Or why not.
-    """
+    """Return the nearest speed on one side where the amplitude is 0.707 of the peak, or why not."""
     from scipy.optimize import brentq
 
     level = _HALF_POWER * top.amplitude

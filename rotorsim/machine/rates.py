@@ -40,12 +40,14 @@ def _balanced(a: Array) -> Array:
     return result
 
 
-def _growth_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
-    """Return the largest real part of the four eigenvalues: positive where the rotor is unstable.
+def growth_rate_map(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
+    """Return the growth rates of every operating point with every mass, shape (..., n_mass) [1/s].
+
+    The largest real part of the four eigenvalues: positive where the rotor is unstable, NaN where a
+    coefficient is not finite.
 
     stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
-    mass : [kg], broadcast against the leading dimensions.
-    Returns: [1/s]; NaN where a coefficient is not finite.
+    mass : (n_mass,) array [kg]
     Raises InputError: A mass is not above zero.
 
     With M(s) the mean of the two diagonal entries of s^2 + (C s + K)/m, the characteristic
@@ -56,33 +58,14 @@ def _growth_rates(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> 
 
     Examples
     --------
-    >>> _growth_rates([[1.0, 5.0], [-5.0, 1.0]], np.eye(2), [0.02, 0.04, 0.08]).round(12) + 0.0
+    >>> growth_rate_map([[1.0, 5.0], [-5.0, 1.0]], np.eye(2), [0.02, 0.04, 0.08]).round(12) + 0.0
     array([-0.48473118,  0.        ,  0.62287624])
-    """
-    k, c = np.asarray(stiffness, dtype=float), np.asarray(damping, dtype=float)
-    m = np.asarray(mass, dtype=float)
-    lead = np.broadcast_shapes(k.shape[:-2], c.shape[:-2], m.shape)
-    flat_k = np.broadcast_to(k, (*lead, 2, 2)).reshape(-1, 4)
-    flat_c = np.broadcast_to(c, (*lead, 2, 2)).reshape(-1, 4)
-    flat_m = np.ascontiguousarray(np.broadcast_to(m, lead).reshape(-1))
-    _check_mass(flat_m)
-
-    rate = np.empty(flat_m.shape)
-    _fill_rates_pairwise(np.ascontiguousarray(flat_k), np.ascontiguousarray(flat_c), flat_m, rate)
-    doubtful = np.flatnonzero(np.isnan(rate))
-    _solve_densely(rate, doubtful, flat_k[doubtful], flat_c[doubtful], flat_m[doubtful])
-    return rate.reshape(lead)
-
-
-def growth_rate_map(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> Array:
-    """Return the growth rates of every operating point with every mass, shape (..., n_mass) [1/s].
-
-    stiffness, damping : (..., 2, 2) arrays [N/m], [N s/m]
-    mass : (n_mass,) array [kg]
     """
     k, c = np.broadcast_arrays(np.asarray(stiffness, float), np.asarray(damping, float))
     m = np.ascontiguousarray(np.atleast_1d(np.asarray(mass, dtype=float)))
-    _check_mass(m)
+    good = (m > 0.0) & np.isfinite(m)
+    if not good.all():
+        raise InputError("must be above 0 (kg)", key="mass", value=float(m[~good][0]))
 
     flat_k = np.ascontiguousarray(k.reshape(-1, 4))
     flat_c = np.ascontiguousarray(c.reshape(-1, 4))
@@ -94,12 +77,6 @@ def growth_rate_map(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -
     doubtful, row, column = doubtful[finite], row[finite], column[finite]
     _solve_densely(rate.reshape(-1), doubtful, flat_k[row], flat_c[row], m[column])
     return rate.reshape(*k.shape[:-2], m.size)
-
-
-def _check_mass(mass: Array) -> None:
-    if not np.all((mass > 0.0) & np.isfinite(mass)):
-        bad = mass[~((mass > 0.0) & np.isfinite(mass))][0]
-        raise InputError("must be above 0 (kg)", key="mass", value=float(bad))
 
 
 def _solve_densely(
@@ -196,10 +173,7 @@ def _conjugate_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float,
 ) -> float:  # fmt: skip
-    """Return largest real part where the factors are M + t -+ i (l1 s + l0).
-
-    Each other's conjugates.
-    """
+    """Return the largest real part where M + t -+ i (l1 s + l0) are conjugate factors."""
     r1, r2 = _quadratic(complex(alpha, -l1), complex(beta + t, -l0))
     x1, y1, d1 = _polish(r1.real, r1.imag, alpha, beta, n2, n1, n0)
     x2, y2, d2 = _polish(r2.real, r2.imag, alpha, beta, n2, n1, n0)
@@ -214,10 +188,7 @@ def _conjugate_factors(
 def _pair(
     p: float, q: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float, float]:
-    """Return polished roots of one real factor.
-
-    Larger real part, sum, product, worst relative error.
-    """
+    """Return of one real factor's roots the larger real part, sum, product, relative error."""
     half = 0.5 * p
     discriminant = half * half - q
     if discriminant < 0.0:
@@ -330,12 +301,3 @@ def _fill_rates(
     """Write growth rates of (P, 4) stiffness and damping x (Q,) masses to `rate` (P, Q)."""
     for i in range(stiffness.shape[0]):
         _fill_row(stiffness[i], damping[i], mass, rate[i])
-
-
-@compiled(error_model="numpy")
-def _fill_rates_pairwise(
-    stiffness: np.ndarray, damping: np.ndarray, mass: np.ndarray, rate: np.ndarray
-) -> None:
-    """Write growth rates of (P, 4) stiffness and damping with (P,) masses to `rate` (P,)."""
-    for i in range(stiffness.shape[0]):
-        _fill_row(stiffness[i], damping[i], mass[i : i + 1], rate[i : i + 1])

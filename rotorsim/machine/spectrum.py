@@ -92,10 +92,7 @@ class MachineSpectrum:
 
     @cached_property
     def complete(self) -> bool:
-        """Whether it gives all modes.
-
-        Unknowns without mass and damping, as those of a shaft without density, have none.
-        """
+        """Return whether it gives all modes; unknowns without mass and damping have none."""
         most = max(_DENSE, self.count)
         if self.machine.size <= most:
             return True

@@ -1,4 +1,4 @@
-"""What carries a node of a rotor: films, tables, springs, pedestals, seals."""
+"""Supports of a node of a rotor: films, tables, springs, pedestals, seals."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Array, ComplexArray
 from ..bearing.operating_point import kept_throughout
-from ..bearing.table_data import PAD_MATRICES
+from ..bearing.table_format import PAD_MATRICES
 from ..errors import InputError, OutOfRangeError
 
 if TYPE_CHECKING:
@@ -38,9 +38,9 @@ class Support(ABC):
     """Names of the unknowns; the first `coupled` are the node's, the others the support's own."""
     coupled: int = 2
     carries_load: bool = True
-    """Whether it takes part in the static load; a seal does not."""
+    """It takes part in the static load; a seal does not."""
     frequency_dependent: bool = False
-    """Whether `dynamic_stiffness` is more than K + s C + s^2 M."""
+    """`dynamic_stiffness` is more than K + s C + s^2 M."""
 
     @property
     def speeds(self) -> Array:
@@ -252,8 +252,23 @@ def table_support(table: CoefficientTable, **choices: Any) -> Support:
     return TableSupport(one.interpolator())
 
 
+class _Around(Support):
+    """A support around another one, `inner`."""
+
+    inner: Support
+
+    def __post_init__(self) -> None:
+        for name in ("unknowns", "coupled", "carries_load", "frequency_dependent"):
+            object.__setattr__(self, name, getattr(self.inner, name))
+
+    @property
+    def speeds(self) -> Array:
+        """Of the inner support [rad/s]."""
+        return self.inner.speeds
+
+
 @dataclass(frozen=True, eq=False)
-class Pedestal(Support):
+class Pedestal(_Around):
     """A support whose housing stands on springs: a pedestal in series.
 
     inner : Between the node and the housing; its own unknowns are measured from the housing.
@@ -273,20 +288,9 @@ class Pedestal(Support):
     def __post_init__(self) -> None:
         for name in ("mass", "stiffness", "damping"):
             object.__setattr__(self, name, _square(getattr(self, name), 2, name))
-        set_ = object.__setattr__
-        set_(self, "unknowns", (*self.inner.unknowns, "housing_x", "housing_y"))
-        set_(self, "coupled", self.inner.coupled)
-        set_(self, "carries_load", self.inner.carries_load)
-
-    @property
-    def speeds(self) -> Array:
-        """Of the inner support [rad/s]."""
-        return self.inner.speeds
-
-    @property
-    def frequency_dependent(self) -> bool:  # type: ignore[override]
-        """As the inner support."""
-        return self.inner.frequency_dependent
+        super().__post_init__()
+        unknowns = (*self.inner.unknowns, "housing_x", "housing_y")
+        object.__setattr__(self, "unknowns", unknowns)
 
     @property
     def _relative(self) -> Array:
@@ -320,25 +324,11 @@ class Pedestal(Support):
 
 
 @dataclass(frozen=True, eq=False)
-class Turned(Support):
+class Turned(_Around):
     """A support given in a frame that is turned by `angle` [rad] from x towards y."""
 
     inner: Support
     angle: float
-
-    def __post_init__(self) -> None:
-        for name in ("unknowns", "coupled", "carries_load"):
-            object.__setattr__(self, name, getattr(self.inner, name))
-
-    @property
-    def speeds(self) -> Array:
-        """Of the inner support [rad/s]."""
-        return self.inner.speeds
-
-    @property
-    def frequency_dependent(self) -> bool:  # type: ignore[override]
-        """As the inner support."""
-        return self.inner.frequency_dependent
 
     @property
     def _turn(self) -> Array:

@@ -1,4 +1,4 @@
-"""Where a machine changes its verdict, and its critical speeds."""
+"""Threshold speeds, at which a machine changes its verdict, and critical speeds."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ CRITICAL_DAMPING = 0.5**0.5
 
 @dataclass(frozen=True)
 class ThresholdSpeed:
-    """Where the machine changes its verdict.
+    """A speed at which the machine changes its verdict.
 
     speed : [rad/s]
     whirl_frequency : Of the mode that crosses [rad/s]; 0 for a static divergence.
@@ -127,7 +127,7 @@ def subdivided(knots: Array, parts: int) -> Array:
 
 @dataclass(frozen=True)
 class CriticalSpeed:
-    """Where a damped natural frequency equals the shaft speed.
+    """A speed that equals a damped natural frequency.
 
     speed : [rad/s]
     whirl : ``forward``, ``backward`` or ``mixed``.

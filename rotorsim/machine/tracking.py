@@ -98,10 +98,7 @@ class _Follower:
         return end, first and second
 
     def _pair(self, old: Eigenmodes, new: Eigenmodes) -> tuple[Eigenmodes, bool]:
-        """Return new modes in the order of the old ones, and whether all that are wanted are alike.
-
-        A branch without a partner is lost: NaN.
-        """
+        """Return new modes in the old order (NaN: lost), and whether all wanted are alike."""
         from scipy.optimize import linear_sum_assignment
 
         mac = np.abs(old.shapes.conj() @ new.shapes.T) ** 2

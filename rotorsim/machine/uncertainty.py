@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arrays import Array, Booleans
+from ..arrays import Array
 from ..errors import InputError, RotorsimError
 
 _Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
@@ -72,23 +72,13 @@ class Propagation:
             return np.full(np.shape(probability), np.nan)
         return np.asarray(np.quantile(values, np.asarray(probability, dtype=float)))
 
-    def probability_below(self, output: str, limit: float) -> tuple[float, float]:
-        """Return the probability that an output is below `limit`, and its standard error.
-
-        Samples where it is not defined count as not below, failed ones not at all: with
-        ``critical_mass`` and the rotor's mass this is the probability of instability.
-        """
-        return self._share(self._output(output) < limit)
-
     def probability_above(self, output: str, limit: float) -> tuple[float, float]:
         """Return the probability that an output is above `limit`, and its standard error.
 
-        As `probability_below`: of ``growth_rate`` above 0 it is the probability of instability.
+        Samples where it is not defined count as not above, failed ones not at all: of
+        ``growth_rate`` above 0 it is the probability of instability.
         """
-        return self._share(self._output(output) > limit)
-
-    def _share(self, true: Booleans) -> tuple[float, float]:
-        """Return share of the samples without a failure that are true, and its standard error."""
+        true = self._output(output) > limit
         keep = np.ones(true.size, dtype=bool)
         keep[[i for i, _ in self.failures]] = False
         n = int(keep.sum())
@@ -128,10 +118,7 @@ class Propagation:
         return self._additive_fit(output)[0]
 
     def explained_variance(self, output: str) -> float:
-        """Return adjusted R^2 of the regression behind `first_order_index`.
-
-        NaN where there is none.
-        """
+        """Return adjusted R^2 of the fit behind `first_order_index`; NaN where there is none."""
         return self._additive_fit(output)[1]
 
     def _additive_fit(self, output: str) -> tuple[dict[str, float], float]:
@@ -179,13 +166,11 @@ def _features(column: Array, powers: int) -> Array:
 def _sample_inputs(
     tolerances: Mapping[str, Tolerance],
     count: int,
-    method: Literal["sobol", "latin_hypercube"] = "sobol",
     seed: int = 0,
 ) -> list[dict[str, float]]:
-    """Draw `count` sets of inputs.
+    """Draw `count` sets of inputs from a Sobol' sequence.
 
-    count : Sobol' sequences are balanced at powers of two; others are rounded up to one.
-    method : {"sobol", "latin_hypercube"}
+    count : Rounded up to a power of two, at which the sequence is balanced.
     seed : The same seed draws the same samples.
     """
     from scipy.stats import qmc
@@ -194,14 +179,8 @@ def _sample_inputs(
         raise InputError("at least one input needs a tolerance", key="tolerances")
     if count < 2:
         raise InputError("must be 2 or more", key="count", value=count)
-    rng = np.random.default_rng(seed)
-    if method == "sobol":
-        power = math.ceil(math.log2(count))
-        unit = qmc.Sobol(len(tolerances), rng=rng).random_base2(power)
-    elif method == "latin_hypercube":
-        unit = qmc.LatinHypercube(len(tolerances), rng=rng).random(count)
-    else:
-        raise InputError("must be sobol or latin_hypercube", key="method", value=method)
+    sequence = qmc.Sobol(len(tolerances), rng=np.random.default_rng(seed))
+    unit = sequence.random_base2(math.ceil(math.log2(count)))
     columns = {n: t.from_unit(unit[:, i]) for i, (n, t) in enumerate(tolerances.items())}
     return [{n: float(c[i]) for n, c in columns.items()} for i in range(len(unit))]
 
@@ -210,7 +189,6 @@ def propagate(
     function: Callable[[dict[str, float]], Mapping[str, float | None]],
     tolerances: Mapping[str, Tolerance],
     count: int = 128,
-    method: Literal["sobol", "latin_hypercube"] = "sobol",
     seed: int = 0,
     mapper: _Mapper = map,
 ) -> Propagation:
@@ -219,10 +197,10 @@ def propagate(
     function : Inputs by name to outputs by name, for example ``threshold_speed`` [rad/s] and
         ``critical_mass`` [kg]; None or NaN: not defined there. It must be picklable where `mapper`
         uses processes.
-    count, method, seed : As for `_sample_inputs`.
+    count, seed : As for `_sample_inputs`.
     mapper : ``map``, or the ``map`` of any executor.
     """
-    samples = _sample_inputs(tolerances, count, method, seed)
+    samples = _sample_inputs(tolerances, count, seed)
     results = list(mapper(_Guarded(function), samples))
     failures = tuple((i, r) for i, r in enumerate(results) if isinstance(r, str))
     good = [r for r in results if not isinstance(r, str)]

@@ -42,13 +42,13 @@ def _require(condition: bool, message: str, key: str, value: object) -> None:
         raise InputError(message, key=key, value=value)
 
 
-Preload = Annotated[
+_Preload = Annotated[
     float, Number(least=0.0, below=1.0, hint="it lies from 0 to below 1, for example 0.5")
 ]
-Offset = Annotated[float, Number(least=0.0, most=1.0, hint="it lies from 0 to 1, for example 0.5")]
+_Offset = Annotated[float, Number(least=0.0, most=1.0, hint="it lies from 0 to 1, for example 0.5")]
 
 
-class BearingProfile(StrEnum):
+class _BearingProfile(StrEnum):
     """Usual multi-lobe bores."""
 
     ELLIPTICAL = "elliptical"
@@ -57,7 +57,7 @@ class BearingProfile(StrEnum):
 
 
 class Feed(StrEnum):
-    """How the oil comes to tilting pads, and what becomes of the hot oil that arrives with it."""
+    """Way of the oil to tilting pads, and what becomes of the hot oil that arrives with it."""
 
     FLOODED = "flooded"
     """The housing is full: hot oil and supply mix, and the films draw what they ask for."""
@@ -163,7 +163,7 @@ class Pocket:
 
     @property
     def is_ring(self) -> bool:
-        """Whether it runs all the way round."""
+        """Return whether it runs all the way round."""
         return self.end - self.start > FULL_TURN - 1e-6
 
     def reach(self, bearing_length: float) -> tuple[float, float]:
@@ -243,8 +243,8 @@ class Arc:
 
     start: Annotated[Angle, Example("-90 deg")]
     end: Angle
-    preload: Preload = 0.0
-    offset: Offset = 0.5
+    preload: _Preload = 0.0
+    offset: _Offset = 0.5
 
     def __post_init__(self) -> None:
         check(self, "arc")
@@ -261,15 +261,17 @@ class Arc:
         return self.start + self.offset * (self.end - self.start)
 
 
-def _profile_arcs(profile: BearingProfile, preload: float, offset: float | None) -> tuple[Arc, ...]:
+def _profile_arcs(
+    profile: _BearingProfile, preload: float, offset: float | None
+) -> tuple[Arc, ...]:
     """Return the arcs of a usual bore, angles from the load line.
 
     Two lobes are centred on the load line and opposite it, the split at 90 and 270 deg; three lobes
     with the first centred on the load line. `offset` is 0.5, for offset halves 1.0: each half
     comes nearest where it ends, in the direction of rotation.
     """
-    lobes = 3 if profile is BearingProfile.THREE_LOBE else 2
-    usual = 1.0 if profile is BearingProfile.OFFSET_HALVES else 0.5
+    lobes = 3 if profile is _BearingProfile.THREE_LOBE else 2
+    usual = 1.0 if profile is _BearingProfile.OFFSET_HALVES else 0.5
     span = FULL_TURN / lobes
     return tuple(
         Arc(
@@ -317,9 +319,9 @@ class Bearing:
     pockets: Annotated[tuple[Pocket, ...], Key("pocket")] = ()
     textures: Annotated[tuple[Texture, ...], Key("texture")] = ()
     compliance: AnyCompliance | None = None
-    profile: BearingProfile | None = field(default=None, compare=False)
-    preload: Preload | None = field(default=None, compare=False)
-    offset: Offset | None = field(default=None, compare=False)
+    profile: _BearingProfile | None = field(default=None, compare=False)
+    preload: _Preload | None = field(default=None, compare=False)
+    offset: _Offset | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         check(self, "bearing")

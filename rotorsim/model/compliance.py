@@ -9,7 +9,7 @@ from ..errors import InputError
 from .entries import Angle, Length, Made, Quantity, Stiffness, check
 from .pads import FULL_TURN, POISSON_RATIO, YOUNGS_MODULUS, Extent, Modulus, Poisson
 
-Thin = Annotated[float, Quantity("length", "2 mm")]
+_Thin = Annotated[float, Quantity("length", "2 mm")]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,7 +19,7 @@ class ElasticLayer:
     w = p t (1 + nu)(1 - 2 nu)/((1 - nu) E): nothing moves sideways.
     """
 
-    thickness: Thin
+    thickness: _Thin
     youngs_modulus: Modulus
     poisson_ratio: Poisson = POISSON_RATIO
 
@@ -44,7 +44,7 @@ class ThinBush:
         Sideways it gives way by the load over half of that.
     """
 
-    thickness: Thin
+    thickness: _Thin
     stiffness: Stiffness
     youngs_modulus: Modulus = YOUNGS_MODULUS
 
@@ -70,7 +70,7 @@ class Diaphragm:
     extent: Extent
     width: Length
     width_at_end: Length | None = None
-    thickness: Thin
+    thickness: _Thin
     youngs_modulus: Modulus = YOUNGS_MODULUS
     poisson_ratio: Poisson = POISSON_RATIO
 
@@ -84,6 +84,6 @@ class Diaphragm:
             )
 
 
-COMPLIANCES = {kind.kind: kind for kind in (ElasticLayer, ThinBush, Diaphragm)}
-Compliance = ElasticLayer | ThinBush | Diaphragm
-AnyCompliance = Annotated[Compliance, Made(COMPLIANCES)]
+_COMPLIANCES = {kind.kind: kind for kind in (ElasticLayer, ThinBush, Diaphragm)}
+_Compliance = ElasticLayer | ThinBush | Diaphragm
+AnyCompliance = Annotated[_Compliance, Made(_COMPLIANCES)]

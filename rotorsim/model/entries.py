@@ -1,4 +1,4 @@
-"""What a value may be, written once: annotations of the fields of a dataclass.
+"""Limits of values, written once as annotations of the fields of a dataclass.
 
 ``length: Annotated[float, Quantity("length", "80 mm")]`` says that Python code passes a number in
 SI, above 0, and that a file holds a text with a unit of length. `check` holds a new object against
@@ -178,7 +178,7 @@ class Entry:
 
     @property
     def is_needed(self) -> bool:
-        """Whether there is no default."""
+        """Return whether there is no default."""
         return self.default is inspect.Parameter.empty
 
 

@@ -18,7 +18,7 @@ STEEL_EXPANSION = 11.7e-6
 
 
 class BushFit(StrEnum):
-    """What the bush's outer surface may do."""
+    """Supports of the bush's outer surface."""
 
     FREE = "free"
     RIGID_HOUSING = "rigid_housing"

@@ -1,4 +1,4 @@
-"""What acts on a rotor besides film and unbalance, each given in the load frame."""
+"""Loads on a rotor besides film and unbalance, each given in the load frame."""
 
 from __future__ import annotations
 
@@ -8,18 +8,7 @@ from enum import StrEnum
 from typing import Annotated
 
 from ..errors import InputError
-from .entries import (
-    Duration,
-    Example,
-    Frequency,
-    Instant,
-    Key,
-    Leaf,
-    Pair,
-    Quantity,
-    check,
-    choice,
-)
+from .entries import Duration, Example, Frequency, Instant, Key, Leaf, Pair, Quantity, check, choice
 
 _Force = Annotated[float, Quantity("force", "500 N", "any")]
 Forces = Annotated[tuple[_Force, _Force], Example(["500 N", "0 N"])]
@@ -29,7 +18,7 @@ _Acceleration = Annotated[float, Quantity("acceleration", "10 m/s^2", "any")]
 
 
 class _Place(StrEnum):
-    """Where a load acts on a rotor of one disc, in the order of its nodes."""
+    """Places of a load on a rotor of one disc, in the order of its nodes."""
 
     JOURNAL = "journal"
     DISC = "disc"

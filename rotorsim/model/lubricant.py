@@ -206,7 +206,7 @@ class Lubricant:
 
     @property
     def varies_with_temperature(self) -> bool:
-        """Whether the film's temperature matters to its viscosity."""
+        """Return whether the film's temperature matters to its viscosity."""
         law = self.law
         return not (isinstance(law, ExponentialViscosity) and law.temperature_coefficient == 0.0)
 

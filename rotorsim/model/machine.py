@@ -13,17 +13,7 @@ from typing import Annotated, Any
 
 from ..errors import InputError
 from ..units import parse_quantity
-from .entries import (
-    Angle,
-    Displacement,
-    Example,
-    Leaf,
-    Length,
-    Mass,
-    Number,
-    Quantity,
-    Speed,
-)
+from .entries import Angle, Displacement, Example, Leaf, Length, Mass, Number, Quantity, Speed
 from .entries import (
     Clearance as RadialClearance,
 )
@@ -89,7 +79,7 @@ _AnyStiffness = Annotated[Matrix, MatrixEntry("stiffness", "10 MN/m", any_sign=T
 
 @dataclass(frozen=True)
 class Pedestal:
-    """What a bearing's housing stands on.
+    """Springs and dampers under a bearing's housing.
 
     mass, stiffness, damping : (2, 2) tuples. Of the housing, and between it and the ground [kg,
         N/m, N s/m].
@@ -192,12 +182,6 @@ class FloatingRing:
                  self.outer_clearance),
             )
         )  # type: ignore[return-value]  # fmt: skip
-
-    @property
-    def speed_ratio(self) -> float:
-        """Speed of the centred ring over the shaft's (Petroff); 0 where it is held."""
-        inner, outer = self.drags
-        return inner / (inner + outer) if self.turning else 0.0
 
 
 @dataclass(frozen=True)
@@ -427,7 +411,7 @@ class Destabilising:
 
 @dataclass(frozen=True)
 class LateralSettings:
-    """What a lateral analysis in the style of API 617 and 684 needs beyond the machine.
+    """Entries of a lateral analysis in the style of API 617 and 684 beyond the machine.
 
     Every number of it is an input; the edition is printed with the results.
 

@@ -26,7 +26,7 @@ from .shaft import Diameter, Place
 
 
 class MachineForce(StrEnum):
-    """Which force a film of a machine has in time."""
+    """Force of a film of a machine in time."""
 
     LINEAR = "linear"
     """Stiffness and damping about the static position."""
@@ -126,7 +126,7 @@ class Rub:
 
 @dataclass(frozen=True)
 class MachineOrbit:
-    """What to simulate of a machine in time.
+    """Settings of a machine's simulation in time.
 
     speed : [rad/s]; by default the highest of the machine's speeds.
     drive : In place of `speed`.
@@ -177,5 +177,5 @@ class MachineOrbit:
 
     @property
     def placed(self) -> tuple[PlacedStep | PlacedHarmonic | BladeLoss | Rub, ...]:
-        """What acts at a place of the shaft."""
+        """Forces, stops and losses at places of the shaft."""
         return (*self.step, *self.harmonic, *self.blade_loss, *self.rub)

@@ -13,7 +13,7 @@ from .entries import Angle, Example, Mass, Number, Quantity, Speed, check
 
 MAX_COUNT = 100_000
 _Eccentricity = Annotated[float, Number(least=0.0, hint="it lies between 0 and 1, for example 0.5")]
-Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
+_Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
 _Count = Annotated[int, Number(least=1, most=MAX_COUNT)]
 
 
@@ -34,7 +34,7 @@ class EccentricityTarget:
 class LoadTarget:
     """A given static load [N] along x; the position is searched. 0: no load, a vertical shaft."""
 
-    load: Load
+    load: _Load
 
     def __post_init__(self) -> None:
         check(self, "operating")
@@ -118,7 +118,7 @@ class Operating:
 
     speed: tuple[Speed, ...] | SpeedRange
     eccentricity_ratio: _Eccentricity | None = None
-    load: Load | None = None
+    load: _Load | None = None
     load_direction: Angle = 0.0
 
     def __post_init__(self) -> None:
@@ -142,7 +142,7 @@ class Operating:
 
     @property
     def target(self) -> Target:
-        """What fixes the journal."""
+        """Eccentricity ratio or load that fixes the journal."""
         if self.load is not None:
             return LoadTarget(self.load)
         assert self.eccentricity_ratio is not None

@@ -1,4 +1,4 @@
-"""What is simulated in time: speeds, forces, an actuator."""
+"""Settings of simulations in time: speeds, forces, an actuator."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
 
 
 class OrbitForce(StrEnum):
-    """Which film force an orbit is integrated with."""
+    """Film force that an orbit is integrated with."""
 
     LINEAR = "linear"
     """K and C from the coefficient table."""
@@ -22,7 +22,7 @@ class OrbitForce(StrEnum):
 
 
 class OrbitKind(StrEnum):
-    """What an orbit is about."""
+    """Subject of an orbit."""
 
     FREE_DECAY = "free_decay"
     """Displaced and let go: no unbalance."""
@@ -35,7 +35,7 @@ class OrbitKind(StrEnum):
 
 
 class Design(StrEnum):
-    """How an actuator's feedback is found."""
+    """Design methods of an actuator's feedback."""
 
     LQR = "lqr"
     """Full state feedback, optimal for a weighting of displacement against force."""
@@ -114,7 +114,7 @@ class ActuatorSettings:
 
 @dataclass(frozen=True)
 class OrbitSettings:
-    """What to simulate in the time domain.
+    """Settings of a simulation in the time domain.
 
     speed : float or SpeedRamp [rad/s]
     radial_clearance : The one of the scenario's clearances that the orbit runs in [m]; by default
@@ -163,12 +163,12 @@ class OrbitSettings:
 
     @property
     def is_ramped(self) -> bool:
-        """Whether the speed changes."""
+        """Return whether the speed changes."""
         return isinstance(self.speed, SpeedRamp)
 
     @property
     def loads(self) -> tuple[Load, ...]:
-        """What acts besides film, static load and unbalance."""
+        """Loads besides film, static load and unbalance."""
         every = (self.step, self.harmonic, self.base_motion, self.base_shock)
         return tuple(load for load in every if load is not None)
 

@@ -40,8 +40,8 @@ from .pads import (
 )
 
 
-class PadLoad(StrEnum):
-    """Where the load points."""
+class _PadLoad(StrEnum):
+    """Direction of the load with respect to the pads."""
 
     BETWEEN_PADS = "between_pads"
     ON_PAD = "on_pad"
@@ -57,8 +57,8 @@ and one half is no more than a middle: measured bearings should be given theirs.
 
 
 @dataclass(frozen=True)
-class PadEntry:
-    """What a file says of one pad; None: as the others.
+class _PadEntry:
+    """Entries of one pad in a file; None: as the others.
 
     pivot_angle : [rad]
     pitch_inertia : See `Pad`.
@@ -81,12 +81,12 @@ class PadEntry:
     poisson_ratio: Poisson | None = None
 
     def __post_init__(self) -> None:
-        check(self, "pads" if isinstance(self, PadSet) else "pad")
+        check(self, "pads" if isinstance(self, _PadSet) else "pad")
 
 
 @dataclass(frozen=True)
-class PadSet(PadEntry):
-    """What all pads of a bearing share, and how many there are.
+class _PadSet(_PadEntry):
+    """Entries that all pads of a bearing share, and their number.
 
     load : Where the load points: then the first pivot stands half a pitch ahead of it, or in its
         line. In place of it, `pivot_angle` of the first pad.
@@ -96,7 +96,7 @@ class PadSet(PadEntry):
     """
 
     count: Annotated[int, Number(least=1, most=64)] | None = None
-    load: PadLoad | None = None
+    load: _PadLoad | None = None
     feed: Feed = Feed.FLOODED
     supply_pressure: Annotated[float, Quantity("pressure", "20 kPa", "not_negative")] = 0.0
     supply_temperature: Temperature | None = None
@@ -107,8 +107,8 @@ def tilting_pad_bearing(
     journal_radius: Length,
     length: Annotated[Length, Example("80 mm")],
     radial_clearance: Annotated[Clearance, SEVERAL],
-    pads: Annotated[PadSet, Example("{ count = 5, arc = ... }")] = PadSet(),
-    pad: tuple[PadEntry, ...] = (),
+    pads: Annotated[_PadSet, Example("{ count = 5, arc = ... }")] = _PadSet(),
+    pad: tuple[_PadEntry, ...] = (),
     misalignment: Annotated[tuple[Slope, Slope], Key("tilt")] = (0.0, 0.0),
     roughness: Annotated[float, Quantity("length", "1 um", "not_negative")] = 0.0,
 ) -> Bearing:
@@ -142,7 +142,7 @@ def tilting_pad_bearing(
     )  # fmt: skip
 
 
-def _listed(pads: PadSet, own: tuple[PadEntry, ...]) -> list[PadEntry]:
+def _listed(pads: _PadSet, own: tuple[_PadEntry, ...]) -> list[_PadEntry]:
     """Return the entries of the single pads, each with its pivot's angle."""
     if own and pads.count not in (None, len(own)):
         raise InputError(
@@ -155,7 +155,7 @@ def _listed(pads: PadSet, own: tuple[PadEntry, ...]) -> list[PadEntry]:
             "is missing; write for example count = 5, or a [[bearing.pad]] table for each pad",
             key="bearing.pads.count",
         )
-    listed = list(own) or [PadEntry()] * count
+    listed = list(own) or [_PadEntry()] * count
     given = [entry.pivot_angle is not None for entry in listed]
     if any(given):
         if not all(given):
@@ -175,7 +175,7 @@ def _listed(pads: PadSet, own: tuple[PadEntry, ...]) -> list[PadEntry]:
     pitch = FULL_TURN / count
     first = pads.pivot_angle
     if first is None:
-        first = 0.0 if pads.load is PadLoad.ON_PAD else 0.5 * pitch
+        first = 0.0 if pads.load is _PadLoad.ON_PAD else 0.5 * pitch
     return [replace(entry, pivot_angle=first + k * pitch) for k, entry in enumerate(listed)]
 
 
@@ -183,9 +183,9 @@ _RENAMED = {"radial_clearance": "clearance"}
 _EXAMPLES = {"arc": '"60 deg"', "thickness": '"20 mm"'}
 
 
-def _pad(place: int, entry: PadEntry, shared: PadSet) -> Pad:
+def _pad(place: int, entry: _PadEntry, shared: _PadSet) -> Pad:
     given: dict[str, Any] = {}
-    for field in fields(PadEntry):
+    for field in fields(_PadEntry):
         value = getattr(entry, field.name)
         if value is None and field.name != "pivot_angle":
             value = getattr(shared, field.name)

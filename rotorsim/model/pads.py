@@ -19,11 +19,11 @@ Poisson = Annotated[float, Number(least=0.0, below=0.5)]
 
 
 class Pivot(ABC):
-    """What a pad rests on: force over deflection."""
+    """Support of a pad: force over deflection."""
 
     kind: ClassVar[str]
     pitches: ClassVar[bool] = False
-    """Whether the pad may turn about the tangent as well, as a ball lets it."""
+    """The pad may turn about the tangent as well, as a ball lets it."""
     is_rigid: ClassVar[bool] = False
 
     @abstractmethod
@@ -255,7 +255,7 @@ class LinePivot(_ContactPivot):
         return self.compliance / (math.pi * self.length) * logarithm
 
 
-PIVOTS: dict[str, type[Pivot]] = {
+_PIVOTS: dict[str, type[Pivot]] = {
     kind.kind: kind for kind in (RigidPivot, SpringPivot, LinePivot, SpherePivot, SocketPivot)
 }
 """Every kind of pivot, by its name in a file."""
@@ -270,7 +270,7 @@ PivotOffset = Annotated[
 PadPreload = Annotated[
     float, Number(above=-1.0, below=1.0, hint="1 - assembled over machined clearance")
 ]
-PadPivot = Annotated[Pivot, Made(PIVOTS)]
+PadPivot = Annotated[Pivot, Made(_PIVOTS)]
 Density = Annotated[float, Quantity("density", "7850 kg/m^3")]
 PadMass = Annotated[float, Quantity("mass", "2 kg", "not_negative")]
 Inertia = Annotated[float, Quantity("moment of inertia", "0.002 kg*m^2", "not_negative")]

@@ -9,13 +9,13 @@ from typing import Annotated, ClassVar
 
 from .entries import Made, Number, Quantity, check
 
-Bore = Annotated[float, Quantity("length", "0.8 mm")]
+_Bore = Annotated[float, Quantity("length", "0.8 mm")]
 _STRAIGHT = 1e-6
 """Pressure drop, relative to the supply pressure, below which an orifice's law is straightened."""
 
 
 class Restrictor(ABC):
-    """What stands between a supply and a recess."""
+    """Resistance between a supply and a recess."""
 
     kind: ClassVar[str]
 
@@ -38,7 +38,7 @@ class Capillary(Restrictor):
     """
 
     kind: ClassVar[str] = "capillary"
-    diameter: Bore
+    diameter: _Bore
     length: Annotated[float, Quantity("length", "50 mm")]
 
     def __post_init__(self) -> None:
@@ -62,7 +62,7 @@ class Orifice(Restrictor):
     """
 
     kind: ClassVar[str] = "orifice"
-    diameter: Bore
+    diameter: _Bore
     discharge_coefficient: Annotated[float, Number(above=0.0, most=1.0)] = 0.6
 
     def __post_init__(self) -> None:
@@ -101,6 +101,6 @@ class Pump(Restrictor):
         return self.rate, 0.0
 
 
-RESTRICTORS: dict[str, type[Restrictor]] = {kind.kind: kind for kind in (Capillary, Orifice, Pump)}
+_RESTRICTORS: dict[str, type[Restrictor]] = {kind.kind: kind for kind in (Capillary, Orifice, Pump)}
 """Every kind of restrictor, by its name in a file."""
-AnyRestrictor = Annotated[Restrictor, Made(RESTRICTORS)]
+AnyRestrictor = Annotated[Restrictor, Made(_RESTRICTORS)]

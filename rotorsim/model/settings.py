@@ -1,4 +1,4 @@
-"""What is modelled and how finely: the film's and the heat's settings."""
+"""Settings of the film and the heat: what is modelled, and how finely."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _MAX_CELLS = 20_000_000
 
 
 class Cavitation(StrEnum):
-    """What happens where the film would pull (see docs: theory)."""
+    """Behaviour of the film where it would pull (see docs: theory)."""
 
     FULL_SOMMERFELD = "full_sommerfeld"
     HALF_SOMMERFELD = "half_sommerfeld"
@@ -41,7 +41,7 @@ class Cavitation(StrEnum):
 
 
 class FlowRegime(StrEnum):
-    """How the film flows (see docs: theory)."""
+    """Flow regime of the film (see docs: theory)."""
 
     LAMINAR = "laminar"
     TURBULENT = "turbulent"
@@ -92,7 +92,7 @@ class SurfaceRoughness:
 
 
 class Inception(StrEnum):
-    """Where the film begins."""
+    """Place at which the film begins."""
 
     FREE = "free"
     """The complementarity problem decides."""
@@ -183,7 +183,7 @@ class _ShaftEntry(Leaf):
 
 
 class ViscosityResponse(StrEnum):
-    """What the viscosity does while the journal is displaced, for the stiffness."""
+    """Response of the viscosity to a displacement of the journal, for the stiffness."""
 
     FROZEN = "frozen"
     """Nothing: oil and walls need far longer than a turn to warm up."""
@@ -192,7 +192,7 @@ class ViscosityResponse(StrEnum):
 
 
 class DeformationResponse(StrEnum):
-    """What the shape of elastic pads or bush does while the journal moves, for K and C."""
+    """Response of elastic pads or bush to the journal's motion, for K and C."""
 
     FOLLOWING = "following"
     """It bends with the pressure at once."""
@@ -201,7 +201,7 @@ class DeformationResponse(StrEnum):
 
 
 class RupturedFriction(StrEnum):
-    """Which part of the ruptured sector counts in the reported friction."""
+    """Part of the ruptured sector that counts in the reported friction."""
 
     WHOLE = "whole"
     """All of it, as Raimondi & Boyd, Butenschoen and the paper count."""

@@ -168,7 +168,7 @@ class Disc:
 
     @property
     def has_size(self) -> bool:
-        """Whether it is a disc that can be drawn, and no added mass."""
+        """Return whether it is a disc that can be drawn, and no added mass."""
         return self.polar_inertia > 0.0 and self.mass > 0.0
 
     @classmethod

@@ -22,7 +22,7 @@ NORMAL_REACH = 4.0
 
 
 class Distribution(StrEnum):
-    """How values spread about the nominal one."""
+    """Distribution of values about the nominal one."""
 
     UNIFORM = "uniform"
     """Between nominal - spread and nominal + spread, all alike."""

@@ -11,11 +11,11 @@ from .entries import Clearance, Duration, Instant, Key, Length, Quantity, Speed,
 from .pads import STEEL_DENSITY
 
 _MAX_EVENTS = 100
-Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
+_Load = Annotated[float, Quantity("force", "10 kN", "not_negative")]
 
 
 class TransientStart(StrEnum):
-    """What the solids' temperatures are at the beginning."""
+    """Temperatures of the solids at the beginning."""
 
     COLD = "cold"
     """`initial_temperature` throughout."""
@@ -25,7 +25,7 @@ class TransientStart(StrEnum):
 
 @dataclass(frozen=True)
 class SolidMaterial:
-    """What a solid stores.
+    """Heat capacity and conductivity of a solid.
 
     density : [kg/m3]
     specific_heat : [J/(kg K)]
@@ -57,7 +57,7 @@ class ShaftMaterial(SolidMaterial):
 
 @dataclass(frozen=True)
 class TransientEvent:
-    """What changes at one moment; what is left out stays as it is.
+    """Changes at one moment; what is left out stays as it is.
 
     at : [s]
     over : Time that the change takes, linearly [s]; 0: a step.
@@ -70,7 +70,7 @@ class TransientEvent:
     at: Instant = 0.0
     over: Instant = 0.0
     speed: Speed | None = None
-    load: Load | None = None
+    load: _Load | None = None
     supply_temperature: Temperature | None = None
     ambient_temperature: Temperature | None = None
     supply: bool | None = None

@@ -218,10 +218,7 @@ class Beam:
 
 
 def _shear_coefficient(radius_ratio: float | Array, poisson_ratio: float) -> float | Array:
-    """Return Cowper's shear coefficient of a (hollow) circle.
-
-    `radius_ratio` is inner over outer.
-    """
+    """Return Cowper's shear coefficient of a circle; `radius_ratio` is inner over outer."""
     m2 = np.square(radius_ratio)
     first = (1.0 + m2) ** 2
     return (
@@ -375,28 +372,6 @@ def _element_matrices(beam: Beam, left: float, right: float) -> tuple[Array, Arr
 
 
 @on_one_blas_thread
-def mesh_change(beam: Beam, places: Sequence[float], stiffness: float, count: int) -> float:
-    """Return the largest relative change of natural frequencies when every element is halved.
-
-    places : Nodes with a spring to ground each [m].
-    stiffness : Of each spring [N/m].
-    count : Number of frequencies looked at, the lowest ones, in one plane, without rotation.
-    """
-    from scipy.linalg import eigh
-
-    values = []
-    for refinement in (1, 2):
-        rotor = beam_rotor(beam, places, refinement)
-        springs = np.array(rotor.stiffness)
-        for node in rotor.bearing_nodes:
-            x = int(rotor.first_unknown[node])
-            springs[[x, x + 1], [x, x + 1]] += stiffness
-        squares = eigh(springs, rotor.mass, eigvals_only=True)[: 2 * count]
-        values.append(np.sqrt(np.maximum(squares, 0.0)))
-    floor = 1e-6 * float(values[1][-1])
-    return float(np.max(np.abs(values[0] - values[1]) / np.maximum(values[1], floor)))
-
-
 def buckling_load(beam: Beam, supports: Sequence[float]) -> float:
     """Return the force [N] at which the shaft buckles between supports that do not yield.
 
@@ -465,10 +440,7 @@ def _merged(places: Sequence[float], length: float) -> list[float]:
 
 
 def with_unbalance(rotor: Rotor, planes: Sequence[tuple[float, float, float]]) -> Rotor:
-    """Return rotor with unbalances at places.
-
-    (position [m], mass times radius [kg m], phase [rad]).
-    """
+    """Return the rotor with unbalances (position [m], mass times radius [kg m], phase [rad])."""
     positions = np.array([node.position for node in rotor.nodes])
     unbalance = np.array(rotor.unbalance)
     for at, amount, phase in planes:

@@ -12,7 +12,7 @@ from .rotor import Rotor
 
 
 @dataclass(frozen=True, eq=False)
-class Reduction:
+class _Reduction:
     """Displacements of a rotor from those kept and the amplitudes of fixed-interface modes.
 
     basis : (size, n) array. Column j < len(kept): the static shape of a unit displacement of that
@@ -27,7 +27,7 @@ class Reduction:
     frequencies: Array
 
 
-def reduce_rotor(rotor: Rotor, kept: Sequence[int], modes: int | None = None) -> Reduction:
+def reduce_rotor(rotor: Rotor, kept: Sequence[int], modes: int | None = None) -> _Reduction:
     """Reduce a rotor to its unknowns `kept` and a number of modes (Craig & Bampton 1968).
 
     kept : Unknowns that stay as they are.
@@ -38,7 +38,7 @@ def reduce_rotor(rotor: Rotor, kept: Sequence[int], modes: int | None = None) ->
     if modes is None:
         # nothing is gained by modes where all motions stay
         order = np.concatenate([held, free])
-        return Reduction(np.eye(rotor.size)[:, order], held, np.zeros(0))
+        return _Reduction(np.eye(rotor.size)[:, order], held, np.zeros(0))
     from scipy.linalg import eigh
 
     inner = rotor.stiffness[free[:, None], free]
@@ -52,4 +52,4 @@ def reduce_rotor(rotor: Rotor, kept: Sequence[int], modes: int | None = None) ->
     moved = [i for plane in rotor.planes for i in plane]
     size = np.abs(basis[moved, held.size :]).max(axis=0)
     basis[:, held.size :] /= np.where(size > 0.0, size, 1.0)
-    return Reduction(basis, held, np.sqrt(np.maximum(squares, 0.0)))
+    return _Reduction(basis, held, np.sqrt(np.maximum(squares, 0.0)))

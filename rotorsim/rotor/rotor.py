@@ -40,7 +40,7 @@ class Node:
 class Rotor:
     """M q'' + (D + Omega G) q' + (K + Omega H) q = f, without its supports.
 
-    The constructors are `rigid`, `rigid_body`, `jeffcott` and `from_matrices` here, and
+    The constructors are `rigid`, `jeffcott` and `from_matrices` here, and
     `rotorsim.rotor.beam_rotor` for a shaft from its drawing.
 
     mass, damping, gyroscopic, stiffness, circulatory : (n, n) arrays. SI. The unknowns are grouped
@@ -101,10 +101,7 @@ class Rotor:
         ) and all(np.array_equal(getattr(self, n), getattr(other, n)) for n in arrays)  # fmt: skip
 
     def _label(self, name: str) -> str:
-        """Return how a message calls a matrix.
-
-        By the file's name for it where it is from a file.
-        """
+        """Return how a message calls a matrix: as its file does, where it has one."""
         in_file = {
             "mass": "M", "damping": "D or C", "gyroscopic": "G", "stiffness": "K",
             "circulatory": "H",
@@ -263,41 +260,6 @@ class Rotor:
             mass * np.eye(2), zero, zero, zero, zero, (Node(),),
             unbalance=np.array([unbalance * np.exp(1j * phase)]),
             kind="rigid", parameters={"mass": mass, "unbalance": unbalance},
-        )  # fmt: skip
-
-    @classmethod
-    def rigid_body(
-        cls,
-        mass: float,
-        transverse_inertia: float,
-        polar_inertia: float,
-        bearings: tuple[float, float],
-    ) -> Rotor:
-        """Return the rigid body on two bearings; its nodes are the two journals.
-
-        mass : Of the whole rotor [kg].
-        transverse_inertia, polar_inertia : About the centre of mass [kg m^2].
-        bearings : (float, float). Positions of the journals along z from the centre of mass [m].
-        """
-        above_zero("rotor", mass=mass, transverse_inertia=transverse_inertia)
-        not_negative("rotor", polar_inertia=polar_inertia)
-        a, b = bearings
-        if not (np.isfinite(a) and np.isfinite(b) and a != b):
-            raise InputError("must be two different places", key="rotor.bearings", value=bearings)
-        # From the journals' displacements in a plane to the centre's displacement and slope.
-        centre = np.array([[b, -a], [-1.0, 1.0]]) / (b - a)
-        inertia = centre.T @ np.diag([mass, transverse_inertia]) @ centre
-        gyroscopic = centre.T @ np.diag([0.0, polar_inertia]) @ centre
-        eye, turn = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
-        zero = np.zeros((4, 4))
-        return cls(
-            _kron(inertia, eye), zero, _kron(gyroscopic, turn), zero, zero,
-            (Node("left", position=a), Node("right", position=b)),
-            unbalance=np.zeros(2, dtype=complex), bearing_nodes=(0, 1), kind="rigid_body",
-            parameters={
-                "mass": mass, "transverse_inertia": transverse_inertia,
-                "polar_inertia": polar_inertia,
-            },
         )  # fmt: skip
 
     @classmethod

@@ -15,7 +15,7 @@ from ..rows import RPM, number
 from ..study.hot_spot import HotSpotStudy
 from ..study.lateral import LateralStudy
 from ..study.machine import MachineResult
-from ..study.machine_motion import films_in_motion, labelled, motion_document
+from ..study.motion_results import films_in_motion, labelled, motion_document
 from ..text import markdown
 
 if TYPE_CHECKING:

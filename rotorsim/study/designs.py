@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from ..files.scenario import Scenario
     from ..model.study import Range
 
-RESULTS = (
+_RESULTS = (
     "threshold_speed", "growth_rate", "critical_mass", "eccentricity_ratio", "load",
     "min_film_thickness", "max_pressure", "max_temperature", "power_loss", "side_flow",
 )  # fmt: skip
@@ -52,7 +52,7 @@ _HEADER = "# rotorsim study"
 
 
 @dataclass(frozen=True)
-class Variable:
+class _Variable:
     """An entry that varies, its ends in SI.
 
     unit : SI unit; empty for pure numbers.
@@ -75,7 +75,7 @@ class Variable:
 class Study:
     """Designs and what they come to.
 
-    designs : One row each: ``sample``, the variables by their names, ``status``, the `RESULTS` in
+    designs : One row each: ``sample``, the variables by their names, ``status``, the `_RESULTS` in
         SI. ``threshold_speed`` is the lowest at which the rotor loses its stability: infinite where
         it is stable at all speeds, 0 where it never is, NaN without a rotor or where a speed is not
         known.
@@ -85,7 +85,7 @@ class Study:
     """
 
     title: str
-    variables: tuple[Variable, ...]
+    variables: tuple[_Variable, ...]
     thermal_model: str
     speeds: tuple[float, ...]
     designs: pd.DataFrame
@@ -106,10 +106,10 @@ class Study:
         goals = np.column_stack(
             [-found["threshold_speed"].fillna(0.0), found["power_loss"], found["max_temperature"]]
         )
-        return found.loc[undominated(goals)].sort_values(by="power_loss")
+        return found.loc[_undominated(goals)].sort_values(by="power_loss")
 
 
-def undominated(goals: Array) -> Booleans:
+def _undominated(goals: Array) -> Booleans:
     """Return whether no other row is as low in every column and lower in one, (n,)."""
     order = np.lexsort(goals.T[::-1])
     kept = np.zeros(len(goals), dtype=bool)
@@ -174,7 +174,7 @@ def run_study(
     )  # fmt: skip
 
 
-def _variable(base: Scenario, given: Range) -> Variable:
+def _variable(base: Scenario, given: Range) -> _Variable:
     """Check both ends of a range by the scenario they make."""
     key = f"study.vary.{given.name}"
     try:
@@ -189,7 +189,7 @@ def _variable(base: Scenario, given: Range) -> Variable:
         said = "must ascend" if not low < high else "must begin above 0 for logarithmic spacing"
         raise InputError(said, key=key, value=f"{given.low}, {given.high}")
     unit = "" if kind is None else QUANTITIES[kind].unit
-    return Variable(name, low, high, unit, given.logarithmic)
+    return _Variable(name, low, high, unit, given.logarithmic)
 
 
 def _number(end: Any, kind: str | None) -> float:
@@ -201,7 +201,7 @@ def _number(end: Any, kind: str | None) -> float:
 
 
 def _batches(
-    variables: Sequence[Variable], seed: int, count: int, there: frozenset[int]
+    variables: Sequence[_Variable], seed: int, count: int, there: frozenset[int]
 ) -> Iterator[list[tuple[int, tuple[float, ...]]]]:
     """Return numbers of the designs that are not `there` and their values, a few at a time."""
     from scipy.stats import qmc
@@ -244,7 +244,7 @@ class _Design:
             scenario = base.replace(**dict(zip(self.names, values, strict=True)))
             points = sweep_points(list(scenario.cases()), list(scenario.speeds), workers=1)
         except RotorsimError as error:
-            return ["refused", *[math.nan] * len(RESULTS), str(error)]
+            return ["refused", *[math.nan] * len(_RESULTS), str(error)]
         return self._described(scenario, points)
 
     @staticmethod
@@ -261,7 +261,7 @@ class _Design:
             "critical_mass": math.nan if last.critical_mass is None else last.critical_mass,
         }
         bad = next((point for point in points if not point.converged), None)
-        numbers = [found.get(name, getattr(last, name, math.nan)) for name in RESULTS]
+        numbers = [found.get(name, getattr(last, name, math.nan)) for name in _RESULTS]
         status, message = (bad.status.value, bad.message) if bad else ("converged", "")
         return [status, *numbers, message]
 
@@ -270,20 +270,20 @@ class _Log:
     """The file of a study: a line that says what it is, column names, one row for each design."""
 
     def __init__(
-        self, path: Path, design: _Design, variables: Sequence[Variable], seed: int
+        self, path: Path, design: _Design, variables: Sequence[_Variable], seed: int
     ) -> None:
         digest = hashlib.sha256(repr((design, variables, seed)).encode()).hexdigest()[:24]
         units = {one.name: one.unit for one in variables if one.unit}
         self.path = path
         self._head = [
             f"{_HEADER} {digest}; SI units {json.dumps(units)}",
-            ",".join(["sample", *design.names, "status", *RESULTS, "message"]),
+            ",".join(["sample", *design.names, "status", *_RESULTS, "message"]),
         ]
         self._rows = self._kept()
         self.done = {int(row.split(",", 1)[0]) for row in self._rows}
 
     def _kept(self) -> list[str]:
-        """Whole rows that are there already."""
+        """Return whole rows that are there already."""
         if is_missing(self.path):
             return []
         lines = self.path.read_text(encoding="utf-8", errors="replace").splitlines(keepends=True)

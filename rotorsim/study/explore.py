@@ -1,4 +1,4 @@
-"""What a person varies in a scenario by hand, and what a change comes to, quickly or in full."""
+"""Entries of a scenario varied by hand, and what a change comes to, quickly or in full."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
 
 _T = TypeVar("_T")
-Path = tuple[str | int, ...]
-"""Where an entry stands in the scenario: table, key; for one of several tables also its number."""
+_Path = tuple[str | int, ...]
+"""Place of an entry in the scenario: table, key; for one of several tables also its number."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class Knob:
     value, low, high : Now, and the ends of a slider.
     """
 
-    path: Path
+    path: _Path
     label: str
     base: str
     value: float
@@ -92,7 +92,7 @@ class Knob:
 
 
 # Path ("*": each of several), label, unit, ends of the slider: factors of the value, or values.
-_KNOBS: tuple[tuple[Path, str, str, tuple[float, float], bool], ...] = (
+_KNOBS: tuple[tuple[_Path, str, str, tuple[float, float], bool], ...] = (
     (("operating", "speed"), "Shaft speed", "rpm", (0.3, 1.5), True),
     (("operating", "load"), "Load per bearing", "kN", (0.1, 3.0), True),
     (("operating", "eccentricity_ratio"), "Eccentricity ratio", "", (0.05, 0.95), False),
@@ -137,7 +137,7 @@ def knobs(scenario: Scenario) -> list[Knob]:
     return found
 
 
-def _places(tables: Any, pattern: Path) -> list[tuple[Path, Any, str]]:
+def _places(tables: Any, pattern: _Path) -> list[tuple[_Path, Any, str]]:
     """Return entries that a path with "*" names: path, value, number of several."""
     if "*" in pattern:
         star = pattern.index("*")

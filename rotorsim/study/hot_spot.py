@@ -20,7 +20,8 @@ from ..machine.hot_spot import Journal, SpotFilms, SpotLoop, spot_loop
 from ..machine.peaks import response_speeds
 from ..model import Case, ThermalModel
 from ..status import SolveStatus
-from .machine import MachineResult, film_cases
+from .machine import MachineResult
+from .machine_analysis import film_cases
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +43,7 @@ class HotSpotStudy:
 
     @property
     def stable(self) -> bool:
-        """Whether the temperatures settle at every speed."""
+        """Return whether the temperatures settle at every speed."""
         return bool(np.nanmax(self.loop.growth_rate) < 0.0)
 
     @property

@@ -1,4 +1,4 @@
-"""What goes into a calculation, with units, for `rotorsim check` and the report."""
+"""Inputs of a calculation, with units, for `rotorsim check` and the report."""
 
 from __future__ import annotations
 
@@ -169,10 +169,7 @@ def _oil(scenario: Scenario) -> _Rows:
 
 
 def _grade(scenario: Scenario) -> _Rows:
-    """Return the ISO VG grade as the scenario's text has it.
-
-    The law that follows from it keeps none.
-    """
+    """Return the ISO VG grade of the scenario's text; the law that follows keeps none."""
     given = tomllib.loads(scenario.text).get("lubricant", {})
     if "iso_vg" not in given:
         return []
@@ -262,7 +259,7 @@ _ACCURACY_OR_CHOICE = {
     "film": {"mesh"},
     "thermal": {"model"},
 }
-"""What may differ: accuracy, limits, and what the table itself is asked for."""
+"""Entries that may differ: accuracy, limits, and what the table itself is asked for."""
 
 
 def differences(scenario: Scenario, table: CoefficientTable) -> list[str]:

@@ -140,10 +140,7 @@ def response_document(
 
 
 def _margins(peak: Peak, continuous: tuple[float, float] | None) -> dict[str, float | None]:
-    """Return actual and required separation margin of a peak.
-
-    As shares of the range's nearer end.
-    """
+    """Return actual and required separation margin of a peak, over the range's nearer end."""
     factor = peak.amplification_factor
     if continuous is None:
         return {"separation_margin": None, "required_margin": None}

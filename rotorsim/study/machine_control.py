@@ -78,13 +78,13 @@ class MachineControlStudy:
 
     @property
     def saturates(self) -> bool:
-        """Whether an actuator reached its limit in the run."""
+        """Return whether an actuator reached its limit in the run."""
         force = self.largest_force
         return force is not None and force >= (1.0 - 1e-9) * self.feedback.max_force
 
     @property
     def holds(self) -> bool:
-        """Whether the whole machine is stable and its run ends nearer to rest than it began."""
+        """Return whether the machine is stable and its run ends nearer to rest than it began."""
         stable = complex(self.controlled_eigenvalues[0]).real < 0.0
         if self.controlled is None or not stable:
             return stable

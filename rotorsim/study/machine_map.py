@@ -21,14 +21,9 @@ from ..model import Case, MeshSize
 from ..model.machine import MapEntry
 from ..rotor import Rotor
 from ..threads import on_one_blas_thread
-from .machine import (
-    MachineAnalysis,
-    MachineResult,
-    SupportState,
-    film_support,
-    solve_films_together,
-    thermal_models,
-)
+from .machine import MachineResult
+from .machine_analysis import MachineAnalysis, no_sweep, solve_films_together, thermal_models
+from .machine_supports import SupportState, film_support
 from .planes import Plane, machine_with_mesh, solved_speeds
 from .sweep import Progress, available_cores, map_on_processes, sweep_points
 
@@ -121,7 +116,7 @@ def _axis(one: Parameter, machine: MachineFile, given: object, key: str) -> Arra
     if one.kind == "load":
         speeds = [max(machine.operating.speeds)]
         rotor, model = machine.rotor_with_unbalance(), thermal_models(machine)[0]
-        analysis = MachineAnalysis(Variant(machine), rotor, model, speeds, _no_sweep)
+        analysis = MachineAnalysis(Variant(machine), rotor, model, speeds, no_sweep)
         place = machine.support_names.index(one.owner)
         nominal = float(np.hypot(*analysis.determinate_loads()[0, place]))
     if not nominal:
@@ -133,10 +128,6 @@ def _axis(one: Parameter, machine: MachineFile, given: object, key: str) -> Arra
     if one.kind == "supply_temperature":
         return nominal + _KELVINS
     return nominal * _SPANS.get(one.kind, np.geomspace(0.25, 4.0, 9))
-
-
-def _no_sweep(_cases: list[Case], _speeds: list[float]) -> list[OperatingPoint]:
-    raise AssertionError
 
 
 def _solve_variants(
@@ -158,7 +149,7 @@ def _solve_variants(
     """
     rotors = _Rotors(places)
     analyses = [
-        MachineAnalysis(one, rotors(one.machine), model, speeds, _no_sweep) for one in variants
+        MachineAnalysis(one, rotors(one.machine), model, speeds, no_sweep) for one in variants
     ]
     wanted = [float(speed) for speed in speeds]
     if not solve_films_together(
@@ -221,7 +212,7 @@ class _Job:
 
     @property
     def speed_axis(self) -> int | None:
-        """Which axis is the speed."""
+        """Number of the axis that is the speed."""
         kinds = [one.kind for one in self.axes]
         return kinds.index("speed") if "speed" in kinds else None
 
@@ -385,10 +376,7 @@ class _Films:
 def _matrices(
     speeds: Array, states: Sequence[SupportState], wanted: Array
 ) -> tuple[tuple[str, ...], int, Array]:
-    """Return k, C, M of a film's states at wanted speeds, (n_state, n_speed, 3, m, m).
-
-    NaN: not known.
-    """
+    """Return a film's K, C, M (n_state, n_speed, 3, m, m) at wanted speeds; NaN: not known."""
     supports = [film_support(speeds, state) for state in states]
     if len({one.unknowns for one in supports}) > 1:
         # Pads that carry load here and none there: all of them reduced at the shaft's frequency.
@@ -455,7 +443,7 @@ class _Rows:
                 np.array([speed]), *matrices[:, None], unknowns=unknowns, coupled=coupled
             )
         analysis = MachineAnalysis(
-            variant, self.rotors(variant.machine), self.model, [speed], _no_sweep
+            variant, self.rotors(variant.machine), self.model, [speed], no_sweep
         )
         machine = analysis.assembled(states, films)
         found = machine_spectrum(machine, np.array([speed]))(speed)

@@ -19,7 +19,8 @@ from ..machine import response as to_unbalance
 from ..machine.branches import Modes
 from ..machine.machine import Machine
 from ..machine.response import UnbalanceResponse
-from .machine import MachineResult, analyse_machine
+from .machine import MachineResult
+from .machine_analysis import analyse_machine
 
 if TYPE_CHECKING:
     import control
@@ -85,10 +86,7 @@ def unbalance_response(
     *,
     thermal_model: str | None = None,
 ) -> UnbalanceResponse:
-    """Return the steady response of a machine to its unbalance.
-
-    Parameters are those of `modes`.
-    """
+    """Return the steady response of a machine to its unbalance; parameters as for `modes`."""
     whole = assembled(machine, thermal_model)
     if speed is None and isinstance(machine, MachineFile) and not whole.speeds.size:
         speed = machine.operating.speeds

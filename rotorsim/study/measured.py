@@ -15,7 +15,7 @@ import numpy as np
 
 from ..arguments import file_path
 from ..arrays import Array
-from ..bearing import delimited
+from ..bearing import csv_cells
 from ..bearing.description import curve_title
 from ..bearing.table import CoefficientTable
 from ..errors import InputError, TableError
@@ -52,8 +52,8 @@ class Measured:
 
 
 @dataclass(frozen=True, eq=False)
-class Deviation:
-    """What a computed curve is off from measured points within its speeds.
+class _Deviation:
+    """Deviation of a computed curve from measured points within its speeds.
 
     points : How many those are.
     mean, largest : Computed less measured, the mean and that of the largest modulus (SI).
@@ -74,13 +74,13 @@ def read_measured(path: str | Path) -> tuple[Measured, ...]:
         number with the column's unit.
     """
     source = file_path(path)
-    lines, separator = delimited.cells(source, lambda names: "speed" in names, _OTHER_NAMES)
+    lines, separator = csv_cells.cells(source, lambda names: "speed" in names, _OTHER_NAMES)
     if len(lines) < 2:
         raise TableError(
             f"needs a header with speed and some of {', '.join(list(_KINDS)[1:13])}, and a row",
             source=source,
         )
-    heads = [delimited.named(cell, _OTHER_NAMES) for cell in lines[0][1]]
+    heads = [csv_cells.named(cell, _OTHER_NAMES) for cell in lines[0][1]]
     heads = [
         (name, unit or ("rpm" if cell.lower() == "rpm" else ""))
         for (name, unit), cell in zip(heads, lines[0][1], strict=True)
@@ -149,7 +149,7 @@ def curves(table: CoefficientTable, name: str) -> Iterator[tuple[str, float, Arr
             yield str(model), float(clearance), np.asarray(part.values, dtype=float)
 
 
-def deviations(table: CoefficientTable, measured: Sequence[Measured]) -> list[Deviation]:
+def deviations(table: CoefficientTable, measured: Sequence[Measured]) -> list[_Deviation]:
     """Compare measured points with every curve of the table, linear between its speeds."""
     found = []
     for one in measured:
@@ -164,12 +164,12 @@ def deviations(table: CoefficientTable, measured: Sequence[Measured]) -> list[De
             off = np.interp(one.speed[within], speeds, values[known]) - one.value[within]
             worst = float(off[np.argmax(np.abs(off))])
             found.append(
-                Deviation(one.name, model, clearance, int(within.sum()), float(off.mean()), worst)
+                _Deviation(one.name, model, clearance, int(within.sum()), float(off.mean()), worst)
             )
     return found
 
 
-def deviations_document(found: list[Deviation]) -> list[dict[str, Any]]:
+def deviations_document(found: list[_Deviation]) -> list[dict[str, Any]]:
     """Return deviations as plain data (SI)."""
     return [vars(one) for one in found]
 
@@ -180,7 +180,7 @@ def shown_as(name: str) -> Quantity:
     return quantity(name, "" if kind is None else QUANTITIES[kind].unit)
 
 
-def deviation_rows(found: Sequence[Deviation]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+def deviation_rows(found: Sequence[_Deviation]) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
     """Return head and rows of a table of deviations, in the units shown."""
     head = ("result", "curve", "points", "mean", "largest", "")
     rows = []

@@ -238,10 +238,7 @@ def companion_schedule(settings: OrbitSettings, table: CoefficientTable) -> Spee
 
 
 def curve_of(table: CoefficientTable, model: str, clearance: float) -> CoefficientTable:
-    """Return curve of a thermal model and a clearance [m].
-
-    A table without clearances is for any.
-    """
+    """Return the curve of a thermal model and a clearance [m], which a table may not have."""
     known = table.dataset["radial_clearance"].values
     chosen = {} if np.isnan(known).all() else {"radial_clearance": clearance}
     return table.select(thermal_model=model, **chosen)
@@ -410,10 +407,7 @@ def film_in_motion(scenario: Scenario, orbit: Orbit) -> list[FilmFrame]:
 
 
 def _shown_samples(orbit: Orbit) -> Indices:
-    """Return samples at which the film is shown.
-
-    Every move at both ends of the run, few between.
-    """
+    """Return samples at which the film is shown: every move at both ends, few between."""
     turn = orbit.samples_per_revolution
     step = max(1, turn // _FRAMES_PER_REVOLUTION)
     every = np.arange(0, orbit.t.size, step)

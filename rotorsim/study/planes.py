@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 _FILM_DIMENSIONS = ("radial_clearance", "applied_load", "supply_temperature")
-"""What the film must be solved again for."""
+"""Dimensions for which the film must be solved again."""
 _DIMENSIONS = ("speed", "mass", *_FILM_DIMENSIONS)
 _OWN_AXES = {
     "operating.speed": "speed", "rotor.mass": "mass", "operating.load": "applied_load",
@@ -87,7 +87,7 @@ class Plane:
 
     @property
     def quantities(self) -> tuple[Quantity, Quantity]:
-        """How x and y are shown."""
+        """Quantities of x and y, as they are shown."""
         units = (self.dataset[n].attrs.get("units", "") for n in (self.x, self.y))
         first, second = map(quantity, self.names, units)
         return first, second
@@ -103,7 +103,7 @@ class Plane:
 
     @property
     def destabilised_by_heating(self) -> Booleans | None:
-        """Where only heating makes the rotor unstable, (n_x, n_y); None with one model."""
+        """True where only heating makes the rotor unstable, (n_x, n_y); None with one model."""
         if "destabilised_by_heating" not in self.dataset:
             return None
         found = self.dataset["destabilised_by_heating"].transpose(self.x, self.y)
@@ -151,7 +151,7 @@ def plane_of_scenario(
     }
     speeds = np.asarray(given.get("speed", scenario.speeds if "speed" in (x, y) else []))
     speeds = speeds if speeds.size else scenario.speeds[-1:]
-    table = tabulate_over(
+    table = _tabulate_over(
         scenario, axes, solved_speeds(scenario.speeds, speeds), thermal_models=thermal_models,
         mesh=mesh, executor=executor, workers=workers, progress=progress,
     )  # fmt: skip
@@ -306,7 +306,7 @@ def _masses_about(middle: float) -> Array:
 
 
 def _median_critical_mass(table: CoefficientTable) -> float:
-    """Of every curve at the highest speed [kg]."""
+    """Return the median critical mass of every curve at the highest speed [kg]."""
     from ..bearing.whirl import rigid_thresholds
 
     found = rigid_thresholds(
@@ -329,7 +329,7 @@ COARSE = MeshSize(circumferential=48, axial=12, cross_film=8, bush_radial=8)
 """Mesh for many solutions in a short time: critical masses within some per cent."""
 _VISCOSITY_LIMITS = (1e-7, 1e5)
 OTHERWISE = {"orbit": None, "stability": None, "tolerances": None, "study": None}
-"""What is not asked for where an entry varies."""
+"""Parts of a scenario that are not asked for where an entry varies."""
 
 
 def _with_supply_temperature(case: Case, temperature: float) -> Case:
@@ -402,7 +402,7 @@ def changed(case: Case, values: Mapping[str, float]) -> Case:
     return case
 
 
-def tabulate_over(
+def _tabulate_over(
     scenario: Scenario,
     axes: Mapping[str, Sequence[float]],
     speeds: Sequence[float] | None = None,

@@ -66,7 +66,7 @@ def ring_films(ring: FloatingRing) -> tuple[ShortBearingForce, ShortBearingForce
 
 
 @dataclass(frozen=True)
-class RingState:
+class _RingState:
     """Static state of a floating-ring bearing.
 
     ring_speed : [rad/s]
@@ -78,7 +78,7 @@ class RingState:
     ring: Array
 
 
-def ring_state(ring: FloatingRing, load: Array, speed: float) -> RingState:
+def ring_state(ring: FloatingRing, load: Array, speed: float) -> _RingState:
     """Return places of journal and ring under a load [N] at a speed [rad/s], and the ring's speed.
 
     The torques of both films on the ring balance: each film's shear, and its half of the couple of
@@ -120,7 +120,7 @@ def ring_state(ring: FloatingRing, load: Array, speed: float) -> RingState:
             key="ring",
         )
     turning = float(root_scalar(torque, bracket=(low, high), xtol=1e-10 * speed).root)
-    return RingState(turning, *places(turning))
+    return _RingState(turning, *places(turning))
 
 
 def ring_law(ring: FloatingRing, speed: float) -> Law:

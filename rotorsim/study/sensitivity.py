@@ -1,4 +1,4 @@
-"""Which parameter of which bearing moves a machine's stability threshold most."""
+"""Sensitivity of a machine's stability threshold to the parameters of its bearings."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arrays import Array, ComplexArray
 from ..errors import InputError
+from ..files.parameters import Variant
 from ..files.scenario import Scenario
 from ..machine.machine import Machine
 from ..machine.modes import machine_spectrum
@@ -16,7 +17,9 @@ from ..machine.peaks import node_at
 from ..machine.support import Pedestal, Support, cross_stiffness
 from ..model import Case
 from ..threads import on_one_blas_thread
-from .machine import MachineAnalysis, MachineResult, SupportState, Variant, film_support
+from .machine import MachineResult
+from .machine_analysis import MachineAnalysis
+from .machine_supports import SupportState, film_support
 from .sweep import sweep_points
 
 _SHARE, _KELVIN, _PRELOAD = 0.1, 5.0, 0.1
@@ -27,7 +30,7 @@ _STEP = 0.5
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What a parameter does to the mode that becomes unstable, all others held.
+    """Effect of a parameter on the mode that becomes unstable, all others held.
 
     support : Name of the bearing; of the place, for a destabilising stiffness.
     value : Nominal one (SI).
@@ -137,7 +140,7 @@ def _of_films(result: MachineResult, mode: _Mode, workers: int | None) -> list[S
             scenario: Scenario = scenario,
         ) -> Case:
             changed = scenario.replace(**changes) if changes else scenario
-            return analysis.case(i, changed, share * load)
+            return analysis.case(i, share * load, changed)
 
         nominal = case({})
         bearing = nominal.bearing
@@ -186,7 +189,7 @@ def _of_films(result: MachineResult, mode: _Mode, workers: int | None) -> list[S
 
 
 def _of_cross_stiffness(result: MachineResult, mode: _Mode) -> list[Sensitivity]:
-    """Of destabilising stiffness at the places that the file names, by what it anticipates."""
+    """Return the sensitivity to destabilising stiffness at the places that the file names."""
     rotor, found = result.machine.rotor, []
     for entry in result.description.lateral.destabilising_stiffness:
         node = node_at(rotor, entry.at)

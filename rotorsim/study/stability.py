@@ -78,10 +78,7 @@ class StabilityCurve:
 
     @property
     def growth_rate(self) -> Array | None:
-        """Largest real part of the eigenvalues, above 0 where unstable [1/s]; None: no rotor.
-
-        0 where no mode is damped or driven.
-        """
+        """Largest real part [1/s]: above 0 unstable, 0 with no mode damped; None: no rotor."""
         if self.eigenvalues is None:
             return None
         rate = self.eigenvalues[:, 0].real

@@ -1,4 +1,4 @@
-"""What tolerances mean: films of a bearing or a machine solved for many samples of its inputs."""
+"""Tolerances: films of a bearing or a machine solved for many samples of its inputs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ from ..model.machine import MachineTolerances
 from ..model.tolerances import NORMAL_REACH, Spread, ToleranceSettings
 from ..rotor import Rotor
 from ..rows import RPM
-from .machine import MachineAnalysis, SupportState, thermal_models
+from .machine_analysis import MachineAnalysis, thermal_models
+from .machine_supports import SupportState
 from .planes import changed, machine_with_mesh, with_mesh
 from .sweep import (
     available_cores,

@@ -61,7 +61,7 @@ class Transient:
 
     @property
     def converged(self) -> bool:
-        """Whether the film lasted to the end."""
+        """Return whether the film lasted to the end."""
         return self.points[-1].converged
 
     def values(self, name: str) -> Array:
@@ -227,7 +227,7 @@ def simulate_transient(
     breaks = [t for event in settings.events for t in (event.at, event.at + event.over)]
     steps = []
     for step in solve_transient(
-        conditions_of(settings, case, settings.speed or float(scenario.speeds[-1])),
+        _conditions_of(settings, case, settings.speed or float(scenario.speeds[-1])),
         HeatStorage(settings.shaft, settings.bush),
         settings.duration,
         start=None if settings.start is TransientStart.STEADY else start,
@@ -255,7 +255,7 @@ def _drained_in(steps: list[TransientStep], bearing: Bearing, lost: float) -> fl
     return float(gap / after.side_flow)
 
 
-def conditions_of(
+def _conditions_of(
     settings: TransientSettings, case: Case, speed: float
 ) -> Callable[[float], tuple[Case, float]]:
     """Return the case and the speed [rad/s] at any time; at an event that of before a jump."""

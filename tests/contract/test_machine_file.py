@@ -14,7 +14,8 @@ from rotorsim.bearing.drawing import STANDARD_GRAVITY
 from rotorsim.errors import InputError, ScenarioError
 from rotorsim.files.machine import MachineFile, is_machine, load_machine
 from rotorsim.machine.statics import static_equilibrium, weight
-from rotorsim.study.machine import analyse_machine, destabilised_by_heating
+from rotorsim.study.machine import destabilised_by_heating
+from rotorsim.study.machine_analysis import analyse_machine
 
 DATA = Path(__file__).parents[1] / "data"
 SHAFT = """

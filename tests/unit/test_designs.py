@@ -9,7 +9,7 @@ from scenario_texts import BEARING, CONSTANT_OIL
 
 from rotorsim.errors import InputError
 from rotorsim.files.scenario import Scenario
-from rotorsim.study.designs import RESULTS, run_study, undominated
+from rotorsim.study.designs import _RESULTS, _undominated, run_study
 
 FILM = '[film]\ninception = "free"\nmesh = { circumferential = 32, axial = 8 }\n'
 OPERATING = """\
@@ -47,7 +47,7 @@ def test_designs_lie_between_the_ends_and_fill_them(whole):
     assert len(whole.designs) == 12
     assert clearance.between(80e-6, 140e-6).all()
     assert (np.histogram(clearance, bins=4, range=(80e-6, 140e-6))[0] >= 2).all()
-    assert list(whole.designs.columns[-len(RESULTS) - 1 : -1]) == list(RESULTS)
+    assert list(whole.designs.columns[-len(_RESULTS) - 1 : -1]) == list(_RESULTS)
 
 
 def test_what_was_cut_short_goes_on_to_the_same_designs(whole, tmp_path):
@@ -107,4 +107,4 @@ def test_ranges_out_of_place(vary, said, tmp_path):
 def test_the_front_is_what_nothing_beats():
     goals = np.random.default_rng(1).random((200, 3))
     worse = (goals[:, None] <= goals[None]).all(2) & (goals[:, None] < goals[None]).any(2)
-    assert np.array_equal(undominated(goals), ~worse.any(axis=0))
+    assert np.array_equal(_undominated(goals), ~worse.any(axis=0))

@@ -16,10 +16,10 @@ import pytest
 
 from rotorsim.bearing.operating_point import OperatingPoint
 from rotorsim.bearing.table import CoefficientTable
-from rotorsim.bearing.table_data import COEFFICIENTS
+from rotorsim.bearing.table_format import COEFFICIENTS
 from rotorsim.errors import InputError, TableError
 from rotorsim.files.formats import FORMATS, read_table, write_table
-from rotorsim.files.ross import _from_ross, _to_ross
+from rotorsim.files.ross import _to_ross, from_ross
 from rotorsim.machine.machine import Machine
 from rotorsim.machine.modes import modes
 from rotorsim.machine.support import TableSupport
@@ -104,7 +104,7 @@ def test_the_turn_keeps_what_the_bearing_does_to_a_rotor():
     assert turn @ [1.0, 0.0] == pytest.approx([0.0, -1.0])  # the load points down
     force = -stiffness @ displacement
     assert -_to_ross(stiffness) @ (turn @ displacement) == pytest.approx(turn @ force)
-    assert _from_ross(_to_ross(stiffness)) == pytest.approx(stiffness)
+    assert from_ross(_to_ross(stiffness)) == pytest.approx(stiffness)
 
 
 def test_more_load_moves_the_journal_down_and_on_with_the_rotation(one, tmp_path):

@@ -12,7 +12,7 @@ from rotorsim.files.machine import MachineFile
 from rotorsim.machine.output_feedback import OutputFeedback, pd_of_sensors, regulator, run_in_time
 from rotorsim.machine.reduction import reduced
 from rotorsim.machine.reduction import response as frequency_response
-from rotorsim.study.machine import analyse_machine
+from rotorsim.study.machine_analysis import analyse_machine
 from rotorsim.study.machine_control import study_machine_control
 
 TEXT = """

@@ -8,7 +8,7 @@ from rotorsim.machine.critical_map import critical_speed_map, principal_stiffnes
 from rotorsim.machine.peaks import node_at, probe_responses, response_speeds
 from rotorsim.rows import RPM
 from rotorsim.show import figures as plots
-from rotorsim.study.machine import analyse_machine
+from rotorsim.study.machine_analysis import analyse_machine
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from rotorsim.machine.destabilising import decrement_curve
 from rotorsim.machine.modes import modes
 from rotorsim.machine.peaks import node_at
 from rotorsim.model.machine import MachineTolerances
-from rotorsim.study.machine import analyse_machine
+from rotorsim.study.machine_analysis import analyse_machine
 from rotorsim.study.machine_map import map_of_machine
 from rotorsim.study.tolerances import study_tolerances
 

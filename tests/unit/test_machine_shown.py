@@ -11,7 +11,7 @@ from command_line import called
 from rotorsim import rows
 from rotorsim.files.machine import MachineFile, load_machine
 from rotorsim.study.lateral import lateral_study
-from rotorsim.study.machine import analyse_machine
+from rotorsim.study.machine_analysis import analyse_machine
 
 TEXT = """
 title = "Rotor <&> one"

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from rotorsim.files.machine import MachineFile
-from rotorsim.study.machine import MachineResult, analyse_machine
+from rotorsim.study.machine import MachineResult
+from rotorsim.study.machine_analysis import analyse_machine
 from rotorsim.study.sensitivity import sensitivities
 
 BEARING = """

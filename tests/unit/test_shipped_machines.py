@@ -9,7 +9,8 @@ from rotorsim.files.machine import MachineFile, is_machine, load_machine
 from rotorsim.files.scenario import load_scenario
 from rotorsim.machine.branches import Verdict
 from rotorsim.shipped import shipped_file, shipped_machines
-from rotorsim.study.machine import analyse_machine, destabilised_by_heating
+from rotorsim.study.machine import destabilised_by_heating
+from rotorsim.study.machine_analysis import analyse_machine
 
 FOLDER = Path(__file__).parents[2] / "scenarios" / "machines"
 MACHINES = sorted(FOLDER.glob("*.toml"))

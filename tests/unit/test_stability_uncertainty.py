@@ -19,9 +19,8 @@ def linear(inputs):
     return {"critical_mass": 3.0 * inputs["clearance"] + 50.0 * inputs["viscosity"], "none": None}
 
 
-@pytest.mark.parametrize("method", ["sobol", "latin_hypercube"])
-def test_samples_follow_their_distributions(method):
-    samples = _sample_inputs(INPUTS, 1024, method, seed=4)
+def test_samples_follow_their_distributions():
+    samples = _sample_inputs(INPUTS, 1024, seed=4)
     assert len(samples) == 1024
     clearance = np.array([s["clearance"] for s in samples])
     viscosity = np.array([s["viscosity"] for s in samples])
@@ -31,8 +30,8 @@ def test_samples_follow_their_distributions(method):
     assert viscosity.mean() == pytest.approx(1.0, abs=1e-3)
     assert viscosity.std() == pytest.approx(0.1, rel=0.01)
     assert np.abs(viscosity - 1.0).max() <= 0.4
-    assert _sample_inputs(INPUTS, 1024, method, seed=4) == samples
-    assert _sample_inputs(INPUTS, 1024, method, seed=5) != samples
+    assert _sample_inputs(INPUTS, 1024, seed=4) == samples
+    assert _sample_inputs(INPUTS, 1024, seed=5) != samples
 
 
 @pytest.mark.parametrize(("count", "tolerance"), [(64, 0.03), (4096, 0.005)])
@@ -93,13 +92,13 @@ def test_too_few_samples_have_no_shares():
 def test_probability_of_instability():
     found = propagate(linear, {"clearance": INPUTS["clearance"], "viscosity": Tolerance(1.0, 1e-9)},
                       1024)  # fmt: skip
-    p, error = found.probability_below("critical_mass", 335.0)  # clearance below 95 of 90 ... 110
+    p, error = found.probability_above("critical_mass", 365.0)  # clearance above 105 of 90 ... 110
     assert p == pytest.approx(0.25, abs=0.002)
     assert error == pytest.approx(np.sqrt(0.25 * 0.75 / 1024), rel=0.05)
-    none, error = found.probability_below("critical_mass", 0.0)
+    none, error = found.probability_above("critical_mass", 1e9)
     assert none == 0.0
     assert error > 0.0
-    assert found.probability_below("none", 1.0)[0] == 0.0
+    assert found.probability_above("none", 1.0)[0] == 0.0
     assert np.isnan(found.quantile("none")).all()
     assert set(found.importance("none").values()) == {0.0}
 
@@ -128,7 +127,7 @@ def test_one_failure_costs_one_sample_on_any_executor():
     failed = [i for i, _ in found.failures]
     assert np.isnan(found.outputs["critical_mass"][failed]).all()
     assert np.isfinite(np.delete(found.outputs["critical_mass"], failed)).all()
-    assert found.probability_below("critical_mass", 1e9)[0] == 1.0
+    assert found.probability_above("critical_mass", 0.0)[0] == 1.0
 
 
 def test_bad_requests():

@@ -192,7 +192,6 @@ def test_stacking_along_a_further_dimension(table):
     assert tall.dataset["kxx"].dims == (
         "thermal_model", "radial_clearance", "supply_temperature", "speed",
     )  # fmt: skip
-    assert tall.extra_dimensions == ("supply_temperature",)
     found = tall.at(250.0, thermal_model="thd", radial_clearance=1e-4, supply_temperature=320.0)
     assert np.array_equal(found.stiffness, make_point("thd", 1e-4, 250.0).stiffness)
     with pytest.raises(TableError, match="do not share"):

@@ -26,7 +26,7 @@ from rotorsim.model import Bearing, Groove, LoadTarget
 from rotorsim.model.restrictors import Capillary, Orifice, Pump
 
 SUPPLY = 3e6
-RESTRICTORS = {
+_RESTRICTORS = {
     "capillary": Capillary(1.5e-3, 0.04), "orifice": Orifice(1.0e-3), "pump": Pump(1e-5),
 }  # fmt: skip
 LENGTH, LAND, HALF_RECESS = 2.0 * RADIUS, 5e-4, math.radians(30.0)
@@ -71,10 +71,10 @@ def thin_land_pad(restrictor, center, position):
     return pressure, -pressure * area * np.array([math.cos(center), math.sin(center)])
 
 
-@pytest.mark.parametrize("kind", RESTRICTORS)
+@pytest.mark.parametrize("kind", _RESTRICTORS)
 @pytest.mark.parametrize("eccentricity", [0.0, 0.3])
 def test_recesses_with_thin_lands(kind, eccentricity):
-    restrictor = RESTRICTORS[kind]
+    restrictor = _RESTRICTORS[kind]
     wet = math.degrees(2.0 * LAND / RADIUS)
     recesses = [recess(a, restrictor, length=LENGTH - 2.0 * LAND) for a in (0, 90, 180, 270)]
     drains = [Groove(deg(a), deg(30.0 - wet)) for a in (45, 135, 225, 315)]
@@ -99,12 +99,12 @@ def test_recesses_with_thin_lands(kind, eccentricity):
     assert stiffness[0, 0] == pytest.approx((behind[0] - ahead[0]) / (2.0 * step), rel=0.02)
 
 
-@pytest.mark.parametrize("kind", RESTRICTORS)
+@pytest.mark.parametrize("kind", _RESTRICTORS)
 @pytest.mark.parametrize("cavitation", ["full_sommerfeld", "half_sommerfeld", "reynolds", "jfo"])
 @pytest.mark.parametrize("slopes", [(0.0, 0.0), (2e-4, 1e-4)], ids=["aligned", "misaligned"])
 def test_coefficients_are_the_derivatives_of_the_force(kind, cavitation, slopes):
     case = isothermal_case(
-        LoadTarget(2000.0), mesh=(48, 16), cavitation=cavitation, grooves=four(RESTRICTORS[kind]),
+        LoadTarget(2000.0), mesh=(48, 16), cavitation=cavitation, grooves=four(_RESTRICTORS[kind]),
         misalignment=slopes,
     )  # fmt: skip
     state = film_at(case, (4.2e-5, 3e-5), 300.0)
@@ -115,10 +115,10 @@ def test_coefficients_are_the_derivatives_of_the_force(kind, cavitation, slopes)
     np.testing.assert_allclose(low.real, stiffness, atol=1e-5 * np.abs(stiffness).max())
 
 
-@pytest.mark.parametrize("kind", RESTRICTORS)
+@pytest.mark.parametrize("kind", _RESTRICTORS)
 @pytest.mark.parametrize("cavitation", ["reynolds", "jfo"])
 def test_a_recess_gives_what_its_restrictor_lets_through(kind, cavitation):
-    restrictor = RESTRICTORS[kind]
+    restrictor = _RESTRICTORS[kind]
     case = isothermal_case(
         LoadTarget(4000.0), mesh=(64, 16), cavitation=cavitation, grooves=four(restrictor)
     )

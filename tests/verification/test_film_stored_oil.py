@@ -12,9 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from film_eigenvalues import refine_eigenvalue, rigid_eigenvalues
 from scipy.optimize import root_scalar
 
-from rotorsim.bearing.dynamics import _refine_eigenvalue, film_dynamics, rigid_eigenvalues
+from rotorsim.bearing.dynamics import film_dynamics
 from rotorsim.bearing.solve import solve_case
 from rotorsim.bearing.whirl import FrequencyScan, rigid_threshold
 from rotorsim.film.linearization import DynamicStiffness, linearize
@@ -188,6 +189,6 @@ def test_films_that_store_nothing_react_as_springs_and_dampers(cavitation):
 def test_refined_eigenvalues_are_those_of_the_polynomial():
     """Of (s + 1)(s + 2) on one unknown, the second found with the first known."""
     law = lambda s: np.array([[s * s + 3.0 * s + 2.0]])  # noqa: E731
-    first = _refine_eigenvalue(law, -0.7)
+    first = refine_eigenvalue(law, -0.7)
     assert first == pytest.approx(-1.0)
-    assert _refine_eigenvalue(law, -0.7, known=[first]) == pytest.approx(-2.0)
+    assert refine_eigenvalue(law, -0.7, known=[first]) == pytest.approx(-2.0)

@@ -15,7 +15,8 @@ from rotorsim.orbit.forces import CallableForce, ShortBearingForce
 from rotorsim.orbit.motion import simulate_motion
 from rotorsim.orbit.spectrum import whirl_frequency_ratio
 from rotorsim.orbit.system import Link, MotionSystem, derivatives
-from rotorsim.study.machine_motion import limit_cycles, motion_problem
+from rotorsim.study.limit_cycles import limit_cycles
+from rotorsim.study.machine_motion import motion_problem
 
 pytestmark = pytest.mark.slow
 

@@ -9,7 +9,7 @@ from scipy.linalg import eig
 from scipy.optimize import fsolve
 
 from rotorsim.files.machine import MachineFile
-from rotorsim.study.machine import analyse_machine
+from rotorsim.study.machine_analysis import analyse_machine
 
 E, DIAMETER = 207e9, 0.05
 EI = E * math.pi * DIAMETER**4 / 64.0

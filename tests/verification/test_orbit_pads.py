@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from film_eigenvalues import rigid_eigenvalues
 from pad_cases import CLEARANCE, MASSLESS, equal_pads, pad_case
 from scipy.integrate import simpson
 from scipy.linalg import expm
 
-from rotorsim.bearing.dynamics import film_dynamics, rigid_eigenvalues
+from rotorsim.bearing.dynamics import film_dynamics
 from rotorsim.errors import InputError
 from rotorsim.film.pad_solution import solve_pads
 from rotorsim.model import LoadTarget, RigidPivot, SpherePivot, SpringPivot, ThermalSettings

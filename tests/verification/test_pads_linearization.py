@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from film_eigenvalues import rigid_eigenvalues
 from pad_cases import (
     CLEARANCE,
     LENGTH,
@@ -19,7 +20,7 @@ from pad_cases import (
 from scipy.integrate import solve_ivp
 from tolerances import COEFFICIENT_DIFFERENCES, ROUNDING, SYMMETRY
 
-from rotorsim.bearing.dynamics import film_dynamics, rigid_eigenvalues
+from rotorsim.bearing.dynamics import film_dynamics
 from rotorsim.bearing.solve import solve_case
 from rotorsim.film.geometry import film_geometry, pad_unknowns
 from rotorsim.film.linearization import linearize

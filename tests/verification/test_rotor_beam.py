@@ -11,7 +11,7 @@ from rotorsim.machine.support import ConstantSupport
 from rotorsim.machine.thresholds import critical_speeds, threshold_speeds
 from rotorsim.model.shaft import Coupling, Disc, Material, Section
 from rotorsim.rotor import Beam, Rotor, beam_rotor
-from rotorsim.rotor.beam import _shear_coefficient, buckling_load, mesh_change
+from rotorsim.rotor.beam import _shear_coefficient, buckling_load
 from rotorsim.threads import on_one_blas_thread
 
 STEEL = Material(210e9, 7800.0)
@@ -182,13 +182,12 @@ def test_reactions_of_a_slender_shaft_on_three_stiff_supports():
     assert reactions / (0.5 * total) == pytest.approx([3 / 8, 10 / 8, 3 / 8], rel=2e-3)
 
 
-def test_default_mesh_and_what_halving_it_changes():
+def test_default_mesh():
     beam = Beam((Section(0.5, 0.05), Section(0.7, 0.1)), material=STEEL)
     nodes = beam.mesh([0.33])
     assert nodes.size >= 21
     assert np.diff(nodes[nodes <= 0.5 + 1e-9]).max() <= 0.05 + 1e-12
     assert np.abs(nodes - 0.33).min() < 1e-12
-    assert mesh_change(beam, [0.0, 1.2], 1e8, 4) < 2e-3
 
 
 @pytest.mark.parametrize(

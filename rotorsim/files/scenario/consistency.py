@@ -1,4 +1,4 @@
-"""What a scenario's entries must say together, and what they say by being left out.
+"""Checks of a scenario's entries together, and what they say by being left out.
 
 Every function raises `InputError` with the key; `scenario` adds the file and the value found.
 """

@@ -87,10 +87,7 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
 
 
 def _is_deep_key(line: str) -> bool:
-    """Return whether a dotted key or header is absurdly deep.
-
-    Reading such takes quadratic time.
-    """
+    """Return whether a dotted key or header is so deep that reading takes quadratic time."""
     *keys, rest = line.split("=")
     if not keys and rest.lstrip().startswith("["):
         keys = [rest]

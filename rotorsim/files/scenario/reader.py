@@ -63,7 +63,7 @@ _SAID_OTHERWISE = {
     "operating.speed": {"step": _COUNT},
     "stability.mass": {"step": _COUNT},
 }
-"""What users call entries, by table, and what the format calls them."""
+"""Names that users give entries, by table, and those of the format."""
 
 
 class _Finding(NamedTuple):

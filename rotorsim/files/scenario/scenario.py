@@ -36,9 +36,9 @@ from .reader import Reader, makers_of, tables_of
 
 _MAX_TITLE = 500
 _BEARINGS = Made({"bore": Bearing, "tilting_pad": tilting_pad_bearing})
-"""What ``[bearing]`` makes, by its ``kind``."""
+"""Makers of ``[bearing]``, by its ``kind``."""
 _ROTORS = Made({"rigid": Rotor.rigid, "jeffcott": Rotor.jeffcott})
-"""What ``[rotor]`` makes, by its ``kind``."""
+"""Makers of ``[rotor]``, by its ``kind``."""
 
 
 class TitleEntry(Leaf):
@@ -133,7 +133,7 @@ class Scenario:
 
     @property
     def target(self) -> Target:
-        """What fixes the journal: an eccentricity ratio or a load."""
+        """Eccentricity ratio or load that fixes the journal."""
         return self.operating.target
 
     def __repr__(self) -> str:

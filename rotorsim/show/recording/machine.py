@@ -22,7 +22,8 @@ from ...arrays import Array
 from ...machine.thresholds import CRITICAL_DAMPING
 from ...rows import RPM, number
 from ...study import machine_tables as tables
-from ...study.machine import MachineResult, points_with_fields
+from ...study.machine import MachineResult
+from ...study.machine_analysis import points_with_fields
 from ...study.orbits import film_at_rest
 from ...text import markdown
 from ..figures.machine import machine_campbell

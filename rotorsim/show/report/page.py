@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...atomic import write_text
 from ...bearing.description import grouped_warnings, point_title
-from ...bearing.table_data import CONVENTIONS
+from ...bearing.table_format import CONVENTIONS
 from ...rows import RPM, facts_html
 from ...study.inputs import input_rows
 from . import html, results
