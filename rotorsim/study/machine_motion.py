@@ -441,6 +441,7 @@ class _Builder:
             unbalance=self._unbalance(basis, total), links=links,
             block=self._block(linear, place, {}), loads=self._loads(basis, whole["mass"]),
             names=(*rotor.unknowns, *linear.unknowns[size:], *((n, u) for n, u, _ in self.own)),
+            turned_offset=basis.T @ (whole["circulatory"] @ offset),
         )  # fmt: skip
         rest = self._rest(system)
         seals = self._seal_mounts()
