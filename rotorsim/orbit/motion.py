@@ -248,6 +248,17 @@ class Motion:
             kind=self.problem.kind, note=self.problem.note,
         )  # fmt: skip
 
+    def ring_speed(self, name: str) -> Array:
+        """Return the speed (m,) of the floating ring of a support [rad/s].
+
+        Raises InputError: It has no ring that turns; the message lists those that have.
+        """
+        rings = {one.name: one.ring for one in self.problem.system.links if one.ring >= 0}
+        if name not in rings:
+            known = ", ".join(rings) or "none of this machine"
+            raise InputError(f"must have a ring that turns: {known}", key="support", value=name)
+        return self.v[:, rings[name]]
+
     def part(self, first: int, last: int | None = None) -> Motion:
         """Return the samples first to last (excluded)."""
         chosen = slice(first, last)
