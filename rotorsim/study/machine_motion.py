@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, Indices
 from ..errors import InputError
 from ..files.machine import MachineFile
-from ..film.geometry import rotation
+from ..film.geometry import pad_unknowns, rotation
 from ..machine.machine import Machine, Mount
 from ..machine.peaks import node_at
 from ..machine.statics import reactions_by_statics, weight
@@ -49,7 +49,7 @@ from .orbits import FilmFrame
 from .rings import damper_force, ring_films, ring_state
 
 if TYPE_CHECKING:
-    from ..model import Case
+    from ..model import Bearing, Case
     from ..model.machine import Damper, SupportEntry
     from .machine import MachineResult
 
@@ -945,7 +945,7 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
     last = np.arange(max(count - _SHOWN_TURNS * turn, 0), count, max(1, turn // 8))
     rows = np.unique(np.concatenate([np.linspace(0, count - 1, _SHOWN_FRAMES).astype(int), last]))
     path, frames = link.motion(motion.q[rows], motion.v[rows], motion.speed[rows]), []
-    theta = 2.0 * np.pi * (np.arange(96) + 0.5) / 96
+    theta, stand = 2.0 * np.pi * (np.arange(96) + 0.5) / 96, {}
     for row, (x, y, vx, vy, speed) in zip(rows, path, strict=True):
         if isinstance(force, ShortBearingForce):
             half = 0.5 * force.length
@@ -975,6 +975,8 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
             theta = mesh.theta + force.frame + link.angle
             along, pressure = mesh.whole_y, mesh.whole(state.solution.pressure)
             radius = force.bearing.journal_radius
+            if force.pads:
+                stand = _pads_of(force.bearing.turned(link.angle), own)
         else:
             return []
         frames.append(
@@ -983,10 +985,18 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
                 y=np.asarray(along, dtype=float),
                 pressure=pressure, temperature=None, max_temperature=None, journal_radius=radius,
                 radial_clearance=force.radial_clearance, centre=np.array([x, y]),
-                time=float(motion.t[row]),
+                time=float(motion.t[row]), **stand,
             )
         )  # fmt: skip
     return frames
+
+
+def _pads_of(bearing: Bearing, q: Array) -> dict[str, Any]:
+    """Return what a `FilmFrame` shows of pads, from the displacements of journal and pads."""
+    places = pad_unknowns(bearing)[1]
+    pivots = tuple(0.0 if one.pivot is None else float(q[one.pivot]) for one in places)
+    return {"bearing": bearing, "tilts": tuple(float(q[one.tilt]) for one in places),
+            "pivots": pivots}  # fmt: skip
 
 
 def _polar_inertia(machine: MachineFile) -> float:
