@@ -269,6 +269,11 @@ class Motion:
 _SERIES = ("t", "speed", "angle", "q", "v")
 
 
+def rings_of(system: MotionSystem) -> Indices:
+    """Return the unknowns that are angles of floating rings."""
+    return np.array(sorted({one.ring for one in system.links if one.ring >= 0}), dtype=np.intp)
+
+
 def static_position(
     system: MotionSystem, plain: Plain, speed: float, guess: Array
 ) -> tuple[Array, float]:
@@ -281,7 +286,7 @@ def static_position(
         unbalance_start=np.full_like(plain.unbalance_start, math.inf),
         load_times=plain.load_times + np.array([0.0, math.inf, math.inf]),
     )
-    rings = np.array([link.ring for link in system.links if link.ring >= 0], dtype=int)
+    rings = rings_of(system)
 
     def residual(z: Array) -> Array:
         q, v = z.copy(), np.zeros_like(z)
@@ -297,7 +302,8 @@ def static_position(
                     return False
         return True
 
-    z = guess.copy()
+    z, units = guess.copy(), system.scale.copy()
+    units[rings] = speed
     off = residual(z)
     weight = max(float(np.abs(system.constant).max()), 1e-9)
     for _ in range(_STATIC_STEPS):
@@ -308,7 +314,7 @@ def static_position(
         jacobian, damping = derivatives(q, v, speed, system.scale, still)
         jacobian[:, rings] = damping[:, rings]
         jacobian = jacobian + system.solved_derivatives(q, v, speed)[0]
-        step = np.linalg.lstsq(jacobian, off, rcond=1e-14)[0]
+        step = units * np.linalg.lstsq(jacobian * units, off, rcond=1e-14)[0]
         share = 1.0
         while share > 1e-4:
             trial = z + share * step
