@@ -86,14 +86,30 @@ speed = "3000 rpm"
 load = "300 N"
 """
 
+PADS = (
+    PLAIN.replace("[bearing]\n", '[bearing]\nkind = "tilting_pad"\n')
+    .replace(
+        "[lubricant]",
+        '[bearing.pads]\ncount = 4\narc = "70 deg"\nthickness = "8 mm"\npreload = 0.2\n'
+        'load = "between_pads"\n[lubricant]',
+    )
+    .replace("circumferential = 64, axial = 16", "circumferential = 64, axial = 8")
+)
+
 
 def two_discs(
-    supports: str, orbit: str = "", *, folder=None, elements: int = 10, unbalance: str = "200 g*mm"
+    supports: str,
+    orbit: str = "",
+    *,
+    folder=None,
+    elements: int = 10,
+    unbalance: str = "200 g*mm",
+    bearing: str = PLAIN,
 ) -> MachineFile:
     """Machine of two discs; its bearing file is written to `folder`."""
     source = None
     if folder is not None:
-        (folder / "plain.toml").write_text(PLAIN)
+        (folder / "plain.toml").write_text(bearing)
         source = folder / "machine.toml"
     text = _TEXT.format(elements=elements, supports=supports, orbit=orbit, unbalance=unbalance)
     return MachineFile.from_text(text, source=source)

@@ -82,8 +82,12 @@ def _say_free(output: Output, machine: MachineFile) -> None:
 
 
 def _kind(entry: Any) -> str:
-    given = entry.bearing or entry.coefficients
-    return f"{given}{' on a pedestal' if entry.pedestal else ''}" if given else "constants"
+    if entry.ring is not None:
+        return "floating ring" if entry.ring.turning else "semi-floating ring"
+    given = entry.bearing or entry.coefficients or "constants"
+    return (
+        f"{given}{' on a pedestal' if entry.pedestal else ' in a damper' if entry.damper else ''}"
+    )
 
 
 def machine_stability(output: Output, path: Path, workers: int | None) -> int:

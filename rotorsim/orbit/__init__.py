@@ -8,7 +8,7 @@ from .forces import CallableForce, LinearForce, ShortBearingForce
 from .integrate import simulate
 from .orbit import Orbit
 from .problem import OrbitProblem, SpeedSchedule
-from .spectrum import cascade, orbit_ellipse, poincare_points, spectrum
+from .spectrum import cascade, locked_ratio, orbit_ellipse, poincare_points, spectrum
 
 __all__ = [
     "CallableForce",
@@ -19,6 +19,7 @@ __all__ = [
     "SpeedSchedule",
     "analyse",
     "cascade",
+    "locked_ratio",
     "orbit_ellipse",
     "poincare_points",
     "simulate",

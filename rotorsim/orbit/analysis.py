@@ -14,6 +14,7 @@ from .spectrum import (
     Ellipse,
     Spectrum,
     cascade,
+    locked_ratio,
     orbit_ellipse,
     poincare_points,
     spectrum,
@@ -81,6 +82,8 @@ def recognise(orbit: Orbit) -> Recognition:
     if period is not None:
         turns = "turn" if period == 1 else "turns"
         message = f"repeats after {period} {turns} of the shaft"
+        if (locked := locked_ratio(last)) is not None:
+            message += f": whirl locked to {locked} of its speed"
         return Recognition(OrbitStatus.PERIODIC, message, start, period)
     ratio = whirl_frequency_ratio(last)
     if ratio is not None:

@@ -17,7 +17,7 @@ from ..arrays import Array, Booleans, ComplexArray, Indices
 from ..compiled import compiled
 from ..errors import InputError
 from ..threads import on_one_blas_thread
-from .motion import static_position
+from .motion import Motion, rings_of, static_position
 from .system import MotionSystem, Plain, derivatives, force_on
 
 _HARMONICS = 7
@@ -92,11 +92,13 @@ class _Balance:
                 'needs films with closed forms or maps (force = "short" or "mapped")',
                 key="orbit.force",
             )
-        if any(link.ring >= 0 for link in system.links):
-            raise InputError("floating rings that turn cannot be followed", key="support.ring")
         self.system, self.harmonics, self.forced = system, harmonics, forced
-        touched = {i for link in system.links for i in (*link.inner, *link.outer) if i >= 0}
+        touched = {
+            i for link in system.links for i in (*link.inner, *link.outer, link.ring) if i >= 0
+        }
         self.touched: Indices = np.array(sorted(touched), dtype=np.intp)
+        # of a floating ring the speed is periodic, not the angle: its coefficients are the speed's
+        self.rings = rings_of(system)
         self.held = np.arange(system.size)
         self.count = 2 * harmonics + 1
         turn = 2.0 * np.pi * np.arange(_MOMENTS) / _MOMENTS
@@ -119,6 +121,12 @@ class _Balance:
             self._plain = speed, whole, links
         return self._plain[1], self._plain[2]
 
+    def units(self, clearance: float, speed: float) -> Array:
+        """Return what each coefficient is measured in: the clearance, of rings the speed."""
+        each = np.full((self.count, self.held.size), clearance)
+        each[:, self.rings] = speed
+        return each.ravel()
+
     def linear(self, speed: float, frequency: float) -> tuple[Array, Array]:
         """Return the matrix (h s, h s) and right side (h s,) of the linear machine."""
         whole, _ = self.plains(speed)
@@ -134,6 +142,8 @@ class _Balance:
                 whole.stiffness - (k * frequency) ** 2 * whole.mass
                 + 1j * k * frequency * whole.damping
             )  # fmt: skip
+            turns = slice(None), self.rings
+            small[turns] = whole.damping[turns] + 1j * k * frequency * whole.mass[turns]
             force: ComplexArray = turning if k == self.forced else np.zeros(s, dtype=complex)
             if k == 0:
                 force = whole.constant.astype(complex)
@@ -149,14 +159,13 @@ class _Balance:
         return matrix.reshape(size, size), right.ravel()
 
     def motion(self, c: Array, frequency: float) -> tuple[Array, Array]:
-        """Return positions and velocities (m, n) of all unknowns that films touch.
+        """Return positions and velocities (m, n) over a period."""
+        return self._moved(c, frequency, self.basis, self.rates)
 
-        The others zero.
-        """
+    def _moved(self, c: Array, frequency: float, basis: Array, rates: Array) -> tuple[Array, Array]:
         waves = c.reshape(self.count, -1)
-        q, v = np.zeros((2, _MOMENTS, self.system.size))
-        q[:, self.held] = self.basis @ waves
-        v[:, self.held] = frequency * (self.rates @ waves)
+        q, v = basis @ waves, frequency * (rates @ waves)
+        q[:, self.rings], v[:, self.rings] = 0.0, q[:, self.rings]
         return q, v
 
     def residual(self, c: Array, frequency: float, speed: float) -> tuple[Array, Array, Array]:
@@ -168,6 +177,8 @@ class _Balance:
         pull = (self.projection @ forces[:, self.held]).ravel()
         at = slice(None), self.touched[:, None], self.touched
         k, d, n = stiffness[at], damping[at], self.touched.size
+        turns = np.searchsorted(self.touched, self.rings)
+        k[..., turns], d[..., turns] = d[..., turns], 0.0
         both = (k.reshape(_MOMENTS, -1), self.basis), (frequency * d.reshape(_MOMENTS, -1),
                                                        self.rates)  # fmt: skip
         slope = np.zeros((self.count, self.count, n * n))
@@ -205,16 +216,15 @@ class _Balance:
         The one nearest to 1 of a free cycle less.
         """
         whole, _ = self.plains(speed)
-        n, waves = self.system.size, c.reshape(self.count, -1)
+        n = self.system.size
         period = 2.0 * np.pi / frequency
         step = period / _FLOQUET_STEPS
         turn = 2.0 * np.pi * (np.arange(_FLOQUET_STEPS) + 0.5) / _FLOQUET_STEPS
-        k = np.arange(1, self.harmonics + 1)
+        k = np.arange(1.0, self.harmonics + 1.0)
         angle = turn[:, None] * k
         basis = np.hstack([np.ones((turn.size, 1)), np.cos(angle), np.sin(angle)])
         rates = np.hstack([np.zeros((turn.size, 1)), -k * np.sin(angle), k * np.cos(angle)])
-        q, v = np.zeros((2, turn.size, n))
-        q[:, self.held], v[:, self.held] = basis @ waves, frequency * (rates @ waves)
+        q, v = self._moved(c, frequency, basis, rates)
         _, stiffness, damping = _along(q, v, speed, self.system.scale, whole)
         # implicit mid-point: an orthogonal motion keeps its size
         state = np.eye(2 * n)
@@ -224,6 +234,8 @@ class _Balance:
             x, y = state[:n], state[n:]
             middle = np.linalg.solve(left, m @ y - 0.5 * step * (s @ x))
             state = np.concatenate([x + step * middle, 2.0 * middle - y])
+        # nothing depends on a ring's angle
+        state = np.delete(np.delete(state, self.rings, 0), self.rings, 1)
         values: ComplexArray = np.asarray(np.linalg.eigvals(state), dtype=complex)
         if self.forced is None:
             values = np.delete(values, np.argmin(np.abs(values - 1.0)))
@@ -243,8 +255,9 @@ def threshold(
     def least_stable(speed: float, guess: Array) -> tuple[complex, Array, ComplexArray]:
         plain = system.plain(speed, speed)
         rest, _ = static_position(system, plain, speed, guess)
-        k, d = derivatives(rest, np.zeros_like(rest), speed, system.scale, plain)
-        n = system.size
+        q, v, n = rest.copy(), np.zeros_like(rest), system.size
+        q[rings], v[rings] = 0.0, rest[rings]
+        k, d = derivatives(q, v, speed, system.scale, plain)
         matrix = np.block([[np.zeros((n, n)), np.eye(n)], [-plain.inverse @ k, -plain.inverse @ d]])
         found = np.linalg.eig(matrix)
         values = np.asarray(found.eigenvalues, dtype=np.complex128)
@@ -254,7 +267,7 @@ def threshold(
         shape = shapes[:n, i] if values[i].imag > 0.0 else shapes[:n, i].conj()
         return complex(values[i].real, abs(values[i].imag)), rest, shape
 
-    before = None
+    rings, before = rings_of(system), None
     for speed in speeds:
         value, rest, _ = least_stable(float(speed), guess)
         if before is not None and before[1] < 0.0 <= value.real:
@@ -298,12 +311,14 @@ def follow_limit_cycle(
     hopf, frequency, rest, shape = found
     held = balance.held
     clearance = min(link.force.radial_clearance for link in system.links if link.film)
-    shape = shape[held] / np.abs(shape[held]).max() * _FIRST * clearance
-    c = np.zeros((balance.count, held.size))
+    shape[balance.rings] *= 1j * frequency
+    moved = np.delete(np.abs(shape), balance.rings).max()
+    shape = shape / moved * _FIRST * clearance
+    c, units = np.zeros((balance.count, held.size)), balance.units(clearance, hopf)
     c[0], c[1], c[1 + harmonics] = rest[held], np.real(shape), -np.imag(shape)
-    start = np.concatenate([c.ravel() / clearance, [frequency / hopf, 1.0]])
+    start = np.concatenate([c.ravel() / units, [frequency / hopf, 1.0]])
     tangent = np.zeros_like(start)
-    tangent[:-2] = c.ravel() / clearance
+    tangent[:-2] = c.ravel() / units
     tangent[: held.size] = 0.0
     return _follow(balance, start, tangent, hopf, clearance, speeds, points, hopf)
 
@@ -317,25 +332,30 @@ def follow_forced(
     turns: int = 1,
     points: int = 120,
     harmonics: int = _HARMONICS,
-    start: Array | None = None,
+    start: Motion | None = None,
 ) -> Branch:
     """Follow the periodic response to unbalance over speed, folds included.
 
     turns : Of the shaft in one period: 2 for motions locked to half the shaft's frequency.
-    start : (2 harmonics + 1, s) array, optional. Coefficients at the lower speed [m]; by default
-        those of small motions.
+    start : A run of this system at one speed that has become periodic: the branch begins there,
+        upwards, at folds back down; by default at the lower speed with small motions.
 
     Other parameters are those of `follow_limit_cycle`.
     """
     balance = _Balance(system, harmonics, turns)
-    low = speeds[0]
+    low = speeds[0] if start is None else float(start.speed[-1])
     rest, _ = static_position(system, system.plain(low, low), low, guess)
     clearance = min(link.force.radial_clearance for link in system.links if link.film)
     c = np.zeros((balance.count, balance.held.size))
     c[0] = rest[balance.held]
     if start is not None:
-        c = np.asarray(start, dtype=float)
-    first = np.concatenate([c.ravel() / clearance, [1.0 / turns, 1.0]])
+        last = start.part(-turns * start.problem.samples_per_revolution)
+        angle = last.angle[:, None] / turns * np.arange(1, harmonics + 1)
+        waves = np.hstack([np.ones((angle.shape[0], 1)), np.cos(angle), np.sin(angle)])
+        moved = last.q.copy()
+        moved[:, balance.rings] = last.v[:, balance.rings]
+        c = np.linalg.lstsq(waves, moved, rcond=None)[0]
+    first = np.concatenate([c.ravel() / balance.units(clearance, low), [1.0 / turns, 1.0]])
     tangent = np.zeros_like(first)
     tangent[-1] = 1.0
     return _follow(balance, first, tangent, low, clearance, speeds, points, None)
@@ -348,18 +368,16 @@ def _follow(
     """Predict along the tangent, correct across it; steps grow and shrink with Newton's work."""
     free, turns = balance.forced is None, float(balance.forced or 1)
     h = balance.harmonics
-    s = balance.held.size
+    s, units = balance.held.size, balance.units(clearance, unit)
 
     def answer(z: Array, reference: Array) -> tuple[Array, Array]:
         """Return scaled residual with the phase's condition, and its Jacobian but one row."""
-        c, frequency, speed = z[:-2] * clearance, z[-2] * unit, z[-1] * unit
+        c, frequency, speed = z[:-2] * units, z[-2] * unit, z[-1] * unit
         off, by_c, by_w = balance.residual(c, frequency, speed)
         step = 1e-6 * speed
         more = balance.residual(c, frequency, speed + step)[0]
-        force = float(np.abs(by_c).max()) * clearance * 1e-3
-        rows = [
-            np.column_stack([by_c * clearance, by_w * unit, (more - off) / step * unit]) / force
-        ]
+        force = float(np.abs(by_c * units).max()) * 1e-3
+        rows = [np.column_stack([by_c * units, by_w * unit, (more - off) / step * unit]) / force]
         ends = [off / force]
         condition = np.zeros(z.size)
         if free:
@@ -391,7 +409,7 @@ def _follow(
             except np.linalg.LinAlgError:
                 return None
             z = z - change
-            if balance.films(z[:-2] * clearance, z[-2] * unit)[1] <= 0.0:
+            if balance.films(z[:-2] * units, z[-2] * unit)[1] <= 0.0:
                 return None
             if np.abs(change).max() < 1e-7:
                 return z, new / np.linalg.norm(new), step + 1
@@ -405,7 +423,7 @@ def _follow(
         raise InputError("the first point of the branch was not found", key="operating.speed")
     z, tangent, _ = point
     while len(rows) < points:
-        c, frequency, speed = z[:-2] * clearance, float(z[-2] * unit), float(z[-1] * unit)
+        c, frequency, speed = z[:-2] * units, float(z[-2] * unit), float(z[-1] * unit)
         sizes, least = balance.films(c, frequency)
         growth = np.abs(balance.multipliers(c, frequency, speed))
         rows.append((speed, frequency, sizes, least, bool(growth.max() < 1.0 + 1e-6)))

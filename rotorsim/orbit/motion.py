@@ -254,6 +254,17 @@ class Motion:
             kind=self.problem.kind, note=self.problem.note,
         )  # fmt: skip
 
+    def ring_speed(self, name: str) -> Array:
+        """Return the speed (m,) of the floating ring of a support [rad/s].
+
+        Raises InputError: It has no ring that turns; the message lists those that have.
+        """
+        rings = {one.name: one.ring for one in self.problem.system.links if one.ring >= 0}
+        if name not in rings:
+            known = ", ".join(rings) or "none of this machine"
+            raise InputError(f"must have a ring that turns: {known}", key="support", value=name)
+        return self.v[:, rings[name]]
+
     def part(self, first: int, last: int | None = None) -> Motion:
         """Return the samples first to last (excluded)."""
         chosen = slice(first, last)
@@ -262,6 +273,11 @@ class Motion:
 
 
 _SERIES = ("t", "speed", "angle", "q", "v")
+
+
+def rings_of(system: MotionSystem) -> Indices:
+    """Return the unknowns that are angles of floating rings."""
+    return np.array(sorted({one.ring for one in system.links if one.ring >= 0}), dtype=np.intp)
 
 
 def static_position(
@@ -276,7 +292,7 @@ def static_position(
         unbalance_start=np.full_like(plain.unbalance_start, math.inf),
         load_times=plain.load_times + np.array([0.0, math.inf, math.inf]),
     )
-    rings = np.array([link.ring for link in system.links if link.ring >= 0], dtype=int)
+    rings = rings_of(system)
 
     def residual(z: Array) -> Array:
         q, v = z.copy(), np.zeros_like(z)
@@ -292,7 +308,8 @@ def static_position(
                     return False
         return True
 
-    z = guess.copy()
+    z, units = guess.copy(), system.scale.copy()
+    units[rings] = speed
     off = residual(z)
     weight = max(float(np.abs(system.constant).max()), 1e-9)
     for _ in range(_STATIC_STEPS):
@@ -303,7 +320,7 @@ def static_position(
         jacobian, damping = derivatives(q, v, speed, system.scale, still)
         jacobian[:, rings] = damping[:, rings]
         jacobian = jacobian + system.solved_derivatives(q, v, speed)[0]
-        step = np.linalg.lstsq(jacobian, off, rcond=1e-14)[0]
+        step = units * np.linalg.lstsq(jacobian * units, off, rcond=1e-14)[0]
         share = 1.0
         while share > 1e-4:
             trial = z + share * step

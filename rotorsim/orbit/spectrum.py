@@ -8,6 +8,7 @@ and negative orders of z = x + i y.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from .orbit import Orbit
 
 _HARMONICS = np.arange(-4, 5)
 _MAX_REVOLUTIONS = 256
+_LOCKED = 1e-3
+"""Of a turn: how far a locked whirl may slip while it closes once."""
 
 
 @dataclass(frozen=True)
@@ -177,6 +180,24 @@ def whirl_frequency_ratio(orbit: Orbit) -> float | None:
         against, bounds=bounds, method="bounded", options={"xatol": 1e-6 * spacing}
     )
     return float(found.x)
+
+
+def locked_ratio(orbit: Orbit, longest: int = 8) -> Fraction | None:
+    """Return the fraction of the shaft's frequency to which a whirl is locked, negative backwards.
+
+    longest : Largest denominator.
+    Returns: None where the strongest motion that is no multiple of the shaft's frequency keeps a
+        frequency of its own, or is missing: in the first or second half of the run it is further
+        than 1e-3/denominator from the fraction.
+    """
+    half, found = orbit.t.size // 2, []
+    for part in (orbit.part(0, half), orbit.part(half)):
+        ratio = whirl_frequency_ratio(part)
+        nearest = Fraction(0) if ratio is None else Fraction(ratio).limit_denominator(longest)
+        if ratio is None or abs(ratio - nearest) * nearest.denominator > _LOCKED:
+            return None
+        found.append(nearest)
+    return found[0] if found[0] == found[1] and found[0].denominator > 1 else None
 
 
 def orbit_ellipse(orbit: Orbit, order: float = 1.0) -> Ellipse:

@@ -149,6 +149,8 @@ class MotionSystem:
     scale : (n,) array. A displacement that counts as large, of each unknown: for tolerances [m].
     basis, offset : (k, n) and (k,) arrays. From the unknowns to the displacements of the whole
         machine.
+    turned_offset : (n,) array, optional. Force over speed by which the circulatory matrix pulls
+        back the shape `offset` [N s].
     """
 
     mass: Array
@@ -165,6 +167,7 @@ class MotionSystem:
     block: LinearBlock | None = None
     loads: tuple[Harmonic, ...] = ()
     names: tuple[tuple[str, str], ...] = field(default=(), repr=False)
+    turned_offset: Array | None = None
 
     def __post_init__(self) -> None:
         least = np.linalg.eigvalsh(self.mass)[0]
@@ -225,10 +228,12 @@ class MotionSystem:
         empty = np.zeros((0, self.size))
         damping, stiffness, constant = self.damping, self.stiffness, self.constant
         gyroscopic, circulatory = self.gyroscopic, self.circulatory
+        turned = np.zeros(self.size) if self.turned_offset is None else self.turned_offset
         if highest == lowest:
             # one matrix of each kind at one speed
             damping, stiffness = damping + lowest * gyroscopic, stiffness + lowest * circulatory
             gyroscopic, circulatory = empty, empty
+            constant = constant - lowest * turned
             if self.block is not None:
                 force, more_stiffness, more_damping = self.block.law(lowest)
                 place, constant = np.ix_(index, index), constant.copy()
@@ -242,6 +247,7 @@ class MotionSystem:
             mass=_array(self.mass), inverse=_array(np.linalg.inv(self.mass)),
             damping=_array(damping), gyroscopic=_array(gyroscopic), stiffness=_array(stiffness),
             circulatory=_array(circulatory), constant=_array(constant),
+            turned_offset=_array(turned),
             unbalance_start=np.array([start for start, _ in self.unbalance], dtype=float),
             unbalance_real=real[0], unbalance_imag=real[1],
             load_times=np.array([[h.frequency, h.start, h.stop] for h in loads]).reshape(-1, 3),
@@ -351,6 +357,7 @@ class Plain(NamedTuple):
     stiffness: Array
     circulatory: Array
     constant: Array
+    turned_offset: Array
     unbalance_start: Array
     unbalance_real: Array
     unbalance_imag: Array
@@ -453,7 +460,7 @@ def force_on(t: float, q: Array, v: Array, phi: float, w: float, alpha: float, p
     force = explicit_force(t, phi, w, alpha, p)
     force -= p.damping @ v + p.stiffness @ q
     if p.gyroscopic.shape[0] > 0:
-        force -= w * (p.gyroscopic @ v + p.circulatory @ q)
+        force -= w * (p.gyroscopic @ v + p.circulatory @ q + p.turned_offset)
     m = p.block.size
     if m > 0:
         row = block_row(w, p)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..orbit import Orbit
 from ..orbit.analysis import speed_cascade
 from ..orbit.description import describe_orbit, run_names, run_title, whirl_range_text
@@ -133,19 +134,23 @@ def figures(results: Results) -> Iterator[tuple[str, Figure]]:
 
 
 def orbit_figures(
-    orbits: Sequence[Orbit], title: str, steady_only: bool = False
+    orbits: Sequence[Orbit],
+    title: str,
+    steady_only: bool = False,
+    lines: Sequence[Mapping[str, tuple[Array, Array]]] = (),
 ) -> Iterator[tuple[str, Figure]]:
-    """Give names and figures: all orbits, and a cascade of each run through the speeds."""
+    """Give names and figures: all orbits, and a cascade of each run through the speeds.
+
+    lines : Of each orbit's cascade, see `spectrum_cascade`.
+    """
     from . import figures as plots
 
     yield "orbits", plots.orbit_plot(orbits, title, steady_only)
-    for orbit, name in zip(orbits, run_names(orbits), strict=True):
+    for k, (orbit, name) in enumerate(zip(orbits, run_names(orbits), strict=True)):
         rows = speed_cascade(orbit)
         if rows is not None:
-            yield (
-                f"cascade_{name}",
-                plots.spectrum_cascade(rows, f"{title}\n{run_title(name)}"),
-            )
+            words, also = f"{title}\n{run_title(name)}", lines[k] if lines else None
+            yield f"cascade_{name}", plots.spectrum_cascade(rows, words, lines=also)
 
 
 def _map_planes(results: Results) -> list[xr.Dataset]:

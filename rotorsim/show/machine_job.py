@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arrays import Array
 from ..machine.critical_map import critical_speed_map, principal_stiffness
 from ..machine.peaks import node_at
 from ..orbit.motion import Motion
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
     from ..files.machine import MachineFile
 
-_STATION_SAMPLES = 20_000
-"""Of each orbit in a recording."""
+_STATION_SAMPLES = 80_000
+"""Of all orbits in a recording together."""
 _STIFFNESS = np.geomspace(1e5, 1e10, 61)
 """Of the undamped critical speed map [N/m]."""
 
@@ -102,7 +103,7 @@ def write_motion(
     from .job import orbit_figures, save_figures
     from .recording import RecordingContents, write_recording
 
-    count = max(1, motion.t.size // _STATION_SAMPLES)
+    count = max(1, motion.t.size * len(motion.stations) // _STATION_SAMPLES)
     per_turn = motion.problem.samples_per_revolution
     # whole parts of a turn stay whole
     step = next(k for k in range(count, per_turn + count) if per_turn % k == 0 or k > per_turn)
@@ -118,13 +119,24 @@ def write_motion(
     )  # fmt: skip
     files = [write_recording(recording, contents)]
     if folder is not None:
-        files += save_figures(orbit_figures(whole[:4], machine.title, steady), folder, ("png",))
+        lines = [_half_speeds(motion, one.name) for one in motion.stations[:4]]
+        drawn = orbit_figures(whole[:4], machine.title, steady, lines)
+        files += save_figures(drawn, folder, ("png",))
     for suffix in animations:
         assert folder is not None
         target = folder / f"motion{suffix}"
         rotor = machine.rotor_with_unbalance()
         files.append(animate_machine(motion, rotor, target, machine.title, steady))
     return files
+
+
+def _half_speeds(motion: Motion, station: str) -> dict[str, tuple[Array, Array]]:
+    """Return what oil whirls with in a station's floating ring: half the mean speeds of a film."""
+    if not any(one.name == station and one.ring >= 0 for one in motion.problem.system.links):
+        return {}
+    ring, speed = motion.ring_speed(station), motion.speed
+    return {"half of shaft + ring": (speed, 0.5 * (speed + ring)), "half of ring": (
+        speed, 0.5 * ring)}  # fmt: skip
 
 
 def _motion_summary(motion: Motion) -> str:

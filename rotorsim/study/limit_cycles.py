@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..files.machine import MachineFile
 from ..model.machine_orbit import MachineForce, MachineOrbit
 from ..orbit.continuation import Branch, follow_forced, follow_limit_cycle
-from ..orbit.motion import MotionProblem, simulate_motion
+from ..orbit.motion import Motion, MotionProblem, simulate_motion
 from ..orbit.orbit import OrbitStatus
 from .machine_motion import motion_problem
 
@@ -53,14 +53,24 @@ def branch_document(branch: Branch) -> dict[str, Any]:
 
 
 def forced_response(
-    machine: MachineFile, orbit: MachineOrbit | None = None, *, turns: int = 1, points: int = 120
+    machine: MachineFile,
+    orbit: MachineOrbit | None = None,
+    *,
+    turns: int = 1,
+    points: int = 120,
+    start: Motion | None = None,
 ) -> Branch:
     """Follow the periodic response to a machine's unbalance over its speeds, folds included.
 
-    Parameters are those of `limit_cycles`; `turns` of the shaft make one period.
+    Parameters are those of `limit_cycles`; `turns` of the shaft make one period. `start`, a run
+    that has become periodic (`rs.simulate`), begins a branch elsewhere than at small motions: of
+    a whirl that is locked to a fraction of the speed, say.
     """
     problem, speeds = _at_lowest_speed(machine, orbit)
-    return follow_forced(problem.system, problem.equilibrium, speeds, turns=turns, points=points)
+    system, rest = problem.system, problem.equilibrium
+    if start is not None:
+        system, rest = start.problem.system, start.problem.equilibrium
+    return follow_forced(system, rest, speeds, turns=turns, points=points, start=start)
 
 
 def _at_lowest_speed(

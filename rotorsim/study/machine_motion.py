@@ -154,6 +154,7 @@ class _Builder(MotionParts):
             unbalance=self._unbalance(basis, total), links=links,
             block=linear_block(self, linear, place, {}), loads=self._loads(basis, whole["mass"]),
             names=(*rotor.unknowns, *linear.unknowns[size:], *((n, u) for n, u, _ in self.own)),
+            turned_offset=basis.T @ (whole["circulatory"] @ offset),
         )  # fmt: skip
         rest = rest_position(self, system)
         seals = seal_mounts(self.machine, rotor)

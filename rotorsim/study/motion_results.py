@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ..film.geometry import rotation
+from ..arrays import Array
+from ..film.geometry import pad_unknowns, rotation
+from ..model import Bearing
 from ..orbit.analysis import recognise
 from ..orbit.description import describe_orbit
 from ..orbit.film_force import SolvedFilmForce
@@ -85,7 +87,7 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
     last = np.arange(max(count - _SHOWN_TURNS * turn, 0), count, max(1, turn // 8))
     rows = np.unique(np.concatenate([np.linspace(0, count - 1, _SHOWN_FRAMES).astype(int), last]))
     path, frames = link.motion(motion.q[rows], motion.v[rows], motion.speed[rows]), []
-    theta = 2.0 * np.pi * (np.arange(96) + 0.5) / 96
+    theta, stand = 2.0 * np.pi * (np.arange(96) + 0.5) / 96, {}
     for row, (x, y, vx, vy, speed) in zip(rows, path, strict=True):
         if isinstance(force, ShortBearingForce):
             half = 0.5 * force.length
@@ -115,6 +117,8 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
             theta = mesh.theta + force.frame + link.angle
             along, pressure = mesh.whole_y, mesh.whole(state.solution.pressure)
             radius = force.bearing.journal_radius
+            if force.pads:
+                stand = _pads_of(force.bearing.turned(link.angle), own)
         else:
             return []
         frames.append(
@@ -123,7 +127,15 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
                 y=np.asarray(along, dtype=float),
                 pressure=pressure, temperature=None, max_temperature=None, journal_radius=radius,
                 radial_clearance=force.radial_clearance, centre=np.array([x, y]),
-                time=float(motion.t[row]),
+                time=float(motion.t[row]), **stand,
             )
         )  # fmt: skip
     return frames
+
+
+def _pads_of(bearing: Bearing, q: Array) -> dict[str, Any]:
+    """Return what a `FilmFrame` shows of pads, from the displacements of journal and pads."""
+    places = pad_unknowns(bearing)[1]
+    pivots = tuple(0.0 if one.pivot is None else float(q[one.pivot]) for one in places)
+    return {"bearing": bearing, "tilts": tuple(float(q[one.tilt]) for one in places),
+            "pivots": pivots}  # fmt: skip

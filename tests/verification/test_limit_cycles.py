@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
 from machine_motions import FILMS, two_discs
 
 import rotorsim as rs
+from rotorsim.orbit import locked_ratio
+from rotorsim.orbit.analysis import recognise
 from rotorsim.orbit.continuation import follow_forced
 from rotorsim.orbit.forces import CallableForce, ShortBearingForce
 from rotorsim.orbit.motion import simulate_motion
@@ -128,3 +131,65 @@ def test_forced_orbit_at_one_speed_is_that_of_the_simulation(machine):
     found = rs.simulate(machine, orbit=orbit).orbit("A").part(-64 * 40)
     extent = 0.5 * max(np.ptp(found.x), np.ptp(found.y))
     assert extent == pytest.approx(branch.amplitude[i, 0], rel=5e-3)
+
+
+def test_a_whirl_locked_to_half_the_speed_is_followed_from_a_run(machine, tmp_path):
+    whirling = two_discs(
+        FILMS,
+        '[orbit]\nforce = "short"\nspeed = "6400 rpm"\nrevolutions = 300\n'
+        'initial_displacement = ["35 um", "0 um"]',
+        folder=tmp_path,
+        unbalance="1000 g*mm",
+    )
+    runs = [
+        rs.simulate(whirling, orbit=replace(whirling.orbit, speed=rpm * math.pi / 30.0))
+        for rpm in (6400.0, 6600.0)
+    ]
+    last = [run.orbit("A").part(-64 * 40) for run in runs]
+    assert [locked_ratio(orbit) for orbit in last] == [Fraction(1, 2)] * 2
+    assert recognise(runs[0].orbit("A")).period == 2
+    branch = rs.forced_response(whirling, turns=2, points=16, start=runs[0])
+    assert branch.frequency == pytest.approx(0.5 * branch.speed, rel=1e-9)
+    assert branch.stable.all()
+    for orbit in last:
+        found = np.interp(orbit.speed[0], branch.speed, branch.amplitude[:, 0])
+        extent = 0.5 * max(np.ptp(orbit.x), np.ptp(orbit.y))
+        assert extent == pytest.approx(found, rel=5e-3)
+    # beside it the unbalance response that small motions lead to, which repeats after one turn
+    fast = replace(whirling.operating, speed=(5500.0 * math.pi / 30.0, 7000.0 * math.pi / 30.0))
+    small = rs.forced_response(replace(whirling, operating=fast), points=60)
+    assert small.speed[-1] > 6400.0 * math.pi / 30.0
+    beside = np.interp(6400.0 * math.pi / 30.0, small.speed, small.amplitude[:, 0])
+    assert beside < 0.6 * branch.amplitude[0, 0]
+
+
+def test_a_free_whirl_is_not_locked(machine):
+    motion = rs.simulate(machine, orbit=replace(
+        machine.orbit, initial_displacement=(35e-6, 0.0), revolutions=200))  # fmt: skip
+    orbit = motion.orbit("A").part(-64 * 60)
+    assert abs(whirl_frequency_ratio(orbit)) > 0.4
+    assert locked_ratio(orbit) is None
+
+
+def test_whirl_in_floating_rings_is_what_a_simulation_comes_to():
+    turbo = rs.load_machine("machines/turbocharger")
+    rpm = math.pi / 30.0
+    slow = replace(turbo, operating=replace(turbo.operating, speed=(2500.0 * rpm, 20_000.0 * rpm)))
+    branch = rs.limit_cycles(slow)
+    assert branch.supercritical is False
+    speed = 14_000.0 * rpm
+    orbit = replace(slow.orbit, speed=speed, revolutions=300, unbalance=False)
+    problem = motion_problem(slow, orbit)
+    shape = np.zeros_like(problem.start)
+    for link in problem.system.links:
+        shape[link.inner[0]] = 5e-6
+    motion = simulate_motion(replace(problem, start=problem.start + shape, tolerance=1e-7))
+    upper = slice(int(np.argmin(branch.speed)), None)
+    assert branch.stable[upper][np.searchsorted(branch.speed[upper], speed)]
+    frequency = np.interp(speed, branch.speed[upper], branch.frequency[upper])
+    for k, name in enumerate(branch.names):
+        end = motion.orbit(name).part(-64 * 60)
+        extent = 0.5 * max(np.ptp(end.x), np.ptp(end.y))
+        amplitude = np.interp(speed, branch.speed[upper], branch.amplitude[upper, k])
+        assert extent == pytest.approx(amplitude, rel=2e-2)
+        assert abs(whirl_frequency_ratio(end)) * speed == pytest.approx(frequency, rel=1e-3)

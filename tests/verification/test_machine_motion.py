@@ -1,4 +1,4 @@
-"""Machines in time: against eigenvalues, unbalance response, unreduced equations, closed forms."""
+"""Machines in time: against eigenvalues, unbalance response, closed forms, balances of energy."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import pytest
 from machine_motions import FILMS, SPRINGS, two_discs
 
 import rotorsim as rs
-from rotorsim.bearing.drawing import STANDARD_GRAVITY
 from rotorsim.errors import InputError
 from rotorsim.model.machine import Damper, EndSeal, FloatingRing
 from rotorsim.orbit import orbit_ellipse
@@ -81,97 +80,6 @@ def test_reduced_and_whole_machine_move_alike(tmp_path) -> None:
         one, other = few.orbit(name), all_.orbit(name)
         size = np.ptp(other.x)
         assert np.abs(one.x - other.x).max() < 5e-3 * size
-
-
-class _Independent:
-    """Unreduced equations of the two discs on short films, by the trapezoidal rule."""
-
-    def __init__(self, machine, speed: float, steps: int) -> None:
-        self.rotor = machine.rotor_with_unbalance()
-        self.speed, self.step = speed, 2.0 * math.pi / speed / steps
-        positions = np.array([node.position for node in self.rotor.nodes])
-        self.journals = [int(np.argmin(np.abs(positions - at))) for at in (0.05, 0.95)]
-        self.weight = np.zeros(self.rotor.size)
-        self.weight += self.rotor.mass[:, 0::4].sum(axis=1) * STANDARD_GRAVITY
-        angle = 2.0 * np.pi * (np.arange(720) + 0.5) / 720
-        self.cos, self.sin = np.cos(angle), np.sin(angle)
-
-    def film(self, x: float, y: float, vx: float, vy: float) -> np.ndarray:
-        """Short film by quadrature: p = 6 mu (dh/dt + w/2 dh/dtheta) (y^2 - L^2/4)/h^3 > 0."""
-        mu, length, radius, clearance = 0.02, 0.02, 0.025, 50e-6
-        h = clearance - x * self.cos - y * self.sin
-        squeeze = -vx * self.cos - vy * self.sin
-        wedge = 0.5 * self.speed * (x * self.sin - y * self.cos)
-        line = np.maximum(-mu * length**3 / h**3 * (squeeze + wedge), 0.0)
-        share = 2.0 * np.pi / 720 * radius
-        return -share * np.array([line @ self.cos, line @ self.sin])
-
-    def forces(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        rotor = self.rotor
-        turning = self.rotor.unbalance_force(self.speed) * np.exp(1j * self.speed * t)
-        force = self.weight + turning.real
-        force = force - (rotor.damping + self.speed * rotor.gyroscopic) @ v
-        force = force - (rotor.stiffness + self.speed * rotor.circulatory) @ q
-        for node in self.journals:
-            i = 4 * node
-            force[i : i + 2] += self.film(q[i], q[i + 1], v[i], v[i + 1])
-        return force
-
-    def run(self, q: np.ndarray, v: np.ndarray, revolutions: int, per_turn: int, every: int):
-        rotor, h = self.rotor, self.step
-        linear = rotor.mass + 0.5 * h * (rotor.damping + self.speed * rotor.gyroscopic)
-        linear = linear + 0.25 * h * h * (rotor.stiffness + self.speed * rotor.circulatory)
-        path, t = [q[[0, 1, 4 * self.journals[0], 4 * self.journals[0] + 1]]], 0.0
-        before = self.forces(t, q, v)
-        for step in range(revolutions * per_turn):
-            t += h
-            matrix = linear.copy()
-            for node in self.journals:
-                i = 4 * node
-                place = np.array([q[i], q[i + 1], v[i], v[i + 1]])
-                base = self.film(*place)
-                for k, d in enumerate((1e-10, 1e-10, 1e-8, 1e-8)):
-                    moved = place.copy()
-                    moved[k] += d
-                    slope = (self.film(*moved) - base) / d
-                    weight = 0.25 * h * h if k < 2 else 0.5 * h
-                    matrix[i : i + 2, i + k % 2] -= weight * slope
-            inverse = np.linalg.inv(matrix)
-            new_v = v.copy()
-            for _ in range(8):
-                new_q = q + 0.5 * h * (v + new_v)
-                after = self.forces(t, new_q, new_v)
-                off = rotor.mass @ (new_v - v) - 0.5 * h * (before + after)
-                change = inverse @ off
-                new_v = new_v - change
-                if np.abs(change).max() < 1e-13:
-                    break
-            q, v = q + 0.5 * h * (v + new_v), new_v
-            before = self.forces(t, q, v)
-            if (step + 1) % every == 0:
-                path.append(q[[0, 1, 4 * self.journals[0], 4 * self.journals[0] + 1]])
-        return np.array(path)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("rpm", "unbalance"), [(3000.0, "2000 g*mm")])
-def test_two_discs_on_short_films_against_unreduced_equations(tmp_path, rpm, unbalance) -> None:
-    orbit = (
-        f'[orbit]\nforce = "short"\nspeed = "{rpm} rpm"\nrevolutions = 12\n'
-        'initial_displacement = ["5 um", "3 um"]\nsamples_per_revolution = 64'
-    )
-    machine = two_discs(FILMS, orbit, folder=tmp_path, unbalance=unbalance, elements=8)
-    problem = motion_problem(machine)
-    ours = simulate_motion(problem)
-    other = _Independent(machine, _speed(rpm), 1024)
-    system, start = problem.system, problem.start
-    begin = system.basis @ start + system.offset
-    path = other.run(begin[: other.rotor.size], 0.0 * begin[: other.rotor.size], 12, 1024, 16)
-    film = ours.orbit("A")
-    size = max(np.ptp(path[:, 2]), np.ptp(path[:, 3]))
-    count = len(path)
-    assert np.abs(film.x[:count] - path[:, 2]).max() < 5e-3 * size
-    assert np.abs(film.y[:count] - path[:, 3]).max() < 5e-3 * size
 
 
 def _damper(**changes) -> Damper:
@@ -272,7 +180,7 @@ def test_energy_of_a_run_balances(tmp_path) -> None:
     system, q, v = problem.system, motion.q, motion.v
     energy = 0.5 * np.einsum("ti,ij,tj->t", v, system.mass, v)
     energy += 0.5 * np.einsum("ti,ij,tj->t", q, system.stiffness, q)
-    power = v @ system.constant
+    power = v @ system.constant - motion.speed * (v @ system.turned_offset)
     for _, u in system.unbalance:
         turning = np.exp(1j * motion.angle)[:, None] * u * motion.speed[:, None] ** 2
         power += np.sum(turning.real * v, axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +40,7 @@ from .style import (
 )
 
 Array = NDArray[np.float64]
+_LINES = ("#0072B2", "#009E73", "#CC79A7")
 
 
 def orbit_plot(
@@ -88,9 +89,16 @@ def orbit_path(orbit: Orbit, title: str = "", ax: Axes | None = None) -> Figure:
 
 
 def spectrum_cascade(
-    cascade: Cascade, title: str = "", ax: Axes | None = None, most: int = 40
+    cascade: Cascade,
+    title: str = "",
+    ax: Axes | None = None,
+    most: int = 40,
+    lines: Mapping[str, tuple[Array, Array]] | None = None,
 ) -> Figure:
-    """Return the spectra stacked by speed, at most about `most` of them."""
+    """Return the spectra stacked by speed, at most about `most` of them.
+
+    lines : Names of frequencies to compare with, their shaft speeds and themselves [rad/s].
+    """
     order = np.argsort(cascade.speed)
     speed, frequency, amplitude = (
         values[order] for values in (cascade.speed, cascade.frequency, cascade.amplitude)
@@ -113,6 +121,15 @@ def spectrum_cascade(
             f"{times:g}x", (times * ends[1] / 60.0, ends[1]), xytext=(2, 12),
             textcoords="offset points", fontsize=8, color="#8a3c00", zorder=rows.size + 2,
         )  # fmt: skip
+    for (name, (at, expected)), colour in zip((lines or {}).items(), _LINES, strict=False):
+        inside = (at * RPM >= ends[0]) & (at * RPM <= ends[1])
+        ax.plot(
+            expected[inside] / (2.0 * np.pi), at[inside] * RPM, ":", color=colour, lw=1.4,
+            label=name, zorder=rows.size + 1,
+        )  # fmt: skip
+    if lines:
+        legend = ax.legend(loc="lower right", fontsize=8, framealpha=1.0)
+        legend.set_zorder(rows.size + 3)
     right = hertz[:, -1].max()
     ax.set_xlim(0.0, min(right, 2.0 * rpm[-1] / 60.0))
     words = [caption(title), f"highest peak {largest * MICRO:.3g} µm"]

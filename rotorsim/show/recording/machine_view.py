@@ -17,6 +17,7 @@ import rerun.blueprint as rrb
 
 from ...arrays import Array, Indices
 from ...files.machine import MachineFile
+from ...model import Bearing
 from ...model.shaft import Disc
 from ...orbit import Orbit
 from ...orbit.motion import Motion, Station
@@ -31,6 +32,8 @@ _FRAMES = 16_000
 """At most, of one run."""
 _SHOWN_SWING = 1.2
 """Largest deflection from the static line as drawn, over the largest radius of the shaft."""
+_ROOM = 0.1
+"""Between pads and the journal where it comes nearest, in journal radii."""
 _CHUNK = 4_096
 _STEEL, _DISC, _MARK, _HOUSING = (170, 178, 190), (86, 140, 190), (230, 159, 0), (110, 120, 130)
 
@@ -104,7 +107,8 @@ class MachineRun:
         return list(shaft_spans(self.machine.rotor.beam, self.nodes))
 
     @property
-    def _side(self) -> float:
+    def side(self) -> float:
+        """1 where the shaft turns clockwise seen from the left, so that y is drawn to the back."""
         return 1.0 if self.machine.rotor.beam.clockwise else -1.0
 
     def _swing(self, first: int, rows: Indices | slice) -> tuple[Array, Array]:
@@ -125,6 +129,27 @@ class MachineRun:
         thickest = max(radius for _, _, radius in self.spans)
         return float(f"{_SHOWN_SWING * thickest / max(largest, 1e-12):.1g}")
 
+    @cached_property
+    def padded(self) -> dict[str, Bearing]:
+        """Bearings with tilting pads by their support's name, in the machine's frame."""
+        bearings = self.machine.bearings
+        return {
+            name: bearings[name].bearing.turned(bearings[name].load_direction + entry.angle)
+            for name, entry in zip(self.machine.support_names, self.machine.support, strict=True)
+            if name in bearings and bearings[name].bearing.pads
+        }
+
+    def face_radius(self, name: str) -> float:
+        """Return the radius [m] at which the faces of a bearing's pads are drawn.
+
+        The clearance as large as deflections, but no farther than the journal comes.
+        """
+        bearing, motion = self.padded[name], self.motion
+        path = motion.displacement(list(motion.station(name).places))
+        reach = self.magnification * float(np.hypot(*path.T).max())
+        room = min(self.magnification * bearing.radial_clearance, reach)
+        return room + (1.0 + _ROOM) * bearing.journal_radius
+
     def points(self, rows: Indices) -> Array:
         """Return nodes (rows, nodes, 3) as drawn [mm]."""
         x, y = self._swing(0, rows)
@@ -132,7 +157,7 @@ class MachineRun:
 
     def _drawn(self, z: Array, x: Array, y: Array) -> Array:
         scale = self.magnification * MILLI
-        return np.stack([z * MILLI, self._side * scale * y, -scale * x], axis=-1)
+        return np.stack([z * MILLI, self.side * scale * y, -scale * x], axis=-1)
 
     def turns(self, node: int, rows: Indices) -> Array:
         """Return attitude (rows, 4) of a disc as a quaternion.
@@ -143,10 +168,10 @@ class MachineRun:
         # slope of the axis: dx/ds = theta_y, dy/ds = -theta_x, s along the rotation vector
         up, side = -tilt_y[:, node], -tilt_x[:, node]
         half = 0.5 * self.magnification
-        axis = np.stack([np.zeros_like(up), -self._side * up, side], axis=-1) * half * self._side
+        axis = np.stack([np.zeros_like(up), -self.side * up, side], axis=-1) * half * self.side
         tilt = np.concatenate([np.clip(axis, -0.4, 0.4), np.ones((len(rows), 1))], axis=-1)
         tilt /= np.linalg.norm(tilt, axis=1)[:, None]
-        angle = 0.5 * self._side * self.motion.angle[rows]
+        angle = 0.5 * self.side * self.motion.angle[rows]
         sin, cos = np.sin(angle), np.cos(angle)
         x, y, z, w = tilt.T
         # tilt after rotation about the shaft's axis
@@ -177,7 +202,7 @@ def log_machine(stream: rr.RecordingStream, shown: MachineRun) -> None:
     thickest = max(radius for _, _, radius in shown.spans)
     for i, disc in enumerate(shown.machine.rotor.beam.discs, start=1):
         node = int(np.argmin(np.abs(shown.nodes - disc.at)))
-        entity = f"{ROOT}/discs/{_entity(disc.name or f'disc {i}')}"
+        entity = f"{ROOT}/discs/{entity_name(disc.name or f'disc {i}')}"
         size = _drawn_size(disc, shown.machine.rotor.beam, thickest)
         _log_disc(stream, entity, *size)
         for rows in _chunks(shown.rows):
@@ -199,7 +224,8 @@ def _chunks(rows: Indices) -> Iterator[Indices]:
         yield rows[start : start + _CHUNK]
 
 
-def _entity(name: str) -> str:
+def entity_name(name: str) -> str:
+    """Return a name as part of an entity's path."""
     return "_".join(name.split()).replace("/", "_")
 
 
@@ -237,17 +263,24 @@ def _log_still(stream: rr.RecordingStream, shown: MachineRun) -> None:
         node = int(np.argmin(np.abs(shown.nodes - entry.at)))
         shaft = max(r for first, last, r in shown.spans if first <= node <= last) * MILLI
         inner, half, at = 1.35 * shaft, 0.5 * shaft, entry.at * MILLI
+        radii = [inner, 1.25 * inner]
+        if (bearing := shown.padded.get(name)) is not None:
+            thick = max(pad.thickness for pad in bearing.pads)
+            inner = 1.05 * (shown.face_radius(name) + thick) * MILLI
+            half, radii = 0.5 * bearing.length * MILLI, [inner]
         turn = np.linspace(0.0, 2.0 * np.pi, 73)
         circles = [
             np.column_stack([np.full(73, at + s * half), r * np.cos(turn), r * np.sin(turn)])
             for s in (-1.0, 0.0, 1.0)
-            for r in (inner, 1.25 * inner)
+            for r in radii
         ]
-        foot = [[[at, s * inner, -inner], [at, 1.5 * s * inner, -2.4 * inner]] for s in (-1.0, 1.0)]
+        low = 0.7 * radii[-1]
+        foot = [[[at, s * low, -low], [at, 1.5 * s * inner, -2.4 * inner]] for s in (-1.0, 1.0)]
         stream.log(
-            f"{ROOT}/bearings/{_entity(name)}",
-            rr.LineStrips3D([*circles, *foot], radii=0.06 * shaft, colors=_HOUSING), static=True,
-        )  # fmt: skip
+            f"{ROOT}/bearings/{entity_name(name)}",
+            rr.LineStrips3D([*circles, *foot], radii=0.03 * len(radii) * shaft, colors=_HOUSING),
+            static=True,
+        )
         places.append([at, 0.0, 1.9 * inner])
         labels.append(name)
     thickest = max(radius for _, _, radius in shown.spans)
@@ -265,7 +298,7 @@ def _log_still(stream: rr.RecordingStream, shown: MachineRun) -> None:
 
 def _log_path(stream: rr.RecordingStream, shown: MachineRun, station: Station) -> None:
     """Write the path of the shaft's centre at a station: short pieces, of which a turn is shown."""
-    entity = f"{ROOT}/orbits/{_entity(station.name)}"
+    entity = f"{ROOT}/orbits/{entity_name(station.name)}"
     style = rr.LineStrips3D.from_fields(radii=rr.Radius.ui_points(1.5), colors=ALARM)
     stream.log(entity, style, static=True)
     for rows in _chunks(shown.rows):
@@ -296,7 +329,7 @@ def machine_view(shown: MachineRun) -> rrb.Spatial3DView:
             eye_up=[0.0, 0.0, 1.0],
         ),
         overrides={
-            f"/{ROOT}/orbits/{_entity(station.name)}": trail
+            f"/{ROOT}/orbits/{entity_name(station.name)}": trail
             for station in shown.motion.stations
             if np.isfinite(station.position)
         },

@@ -31,6 +31,7 @@ from .charts import (
     spectrum_chart,
 )
 from .film_view import log_films
+from .machine_pads import log_pads
 from .machine_view import MachineRun, first_orbit, log_machine, machine_view
 from .orbit_view import (
     ACTUATOR_FORCE,
@@ -177,6 +178,7 @@ def _log_contents(stream: rr.RecordingStream, contents: RecordingContents) -> No
         log_series(stream, run)
     if contents.machine_run is not None:
         log_machine(stream, contents.machine_run)
+        log_pads(stream, contents.machine_run)
     if contents.films:
         log_films(stream, contents.films, contents.runs)
     plane = contents.eigenvalue_chart
@@ -217,6 +219,8 @@ def _notes(contents: RecordingContents) -> str:
             f"{contents.machine_run.magnification:g} times as large; the red lines are the last"
             " turn of the shaft's centre, the marked part of a disc shows that it turns."
         )
+        if contents.machine_run.padded:
+            lines[-1] += " Pads tilt from where they rest, as many times as much."
     if any(film.time is not None for film in contents.films):
         lines.append(
             "- The film follows the journal in the first and the last turns; between them it is"

@@ -244,7 +244,7 @@ def _bearings(results: dict[str, MachineResult]) -> str:
                 )
                 row += [*["-"] * 5, _four(k / 1e6, "MN/m"), _four(c / 1e3, "kN s/m"), "constants"]
             else:
-                row += [*["-"] * 7, "table"]
+                row += [*["-"] * 7, "table" if entry.ring is None else "floating ring"]
             rows.append(row)
     head = heads(
         "name", "at mm", "model", "load kN", "direction °", "e/c", "h_min µm", "p_max MPa",
