@@ -223,7 +223,7 @@ import json, os, random, signal, sys, time
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import ClassVar
-from rotorsim.study.sweep import Journal
+from rotorsim.study.finished import Journal
 from rotorsim.files.scenario import Scenario
 from rotorsim.study.sweep import sweep_points, tabulate
 
