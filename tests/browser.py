@@ -111,8 +111,9 @@ def browser(profile: Path) -> Iterator[Pipe]:
         os.close(our_reader)
 
 
-def visit(page: Path, profile: Path) -> Visit:
-    """Open a local page, wait until it is loaded, and tell what happened."""
+@contextlib.contextmanager
+def opened(page: Path, profile: Path) -> Iterator[tuple[Pipe, str]]:
+    """Open a local page and wait until it is loaded; the browser ends with the block."""
     with browser(profile) as pipe:
         target = pipe.call("Target.createTarget", url="about:blank")["targetId"]
         session = pipe.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
@@ -120,6 +121,18 @@ def visit(page: Path, profile: Path) -> Visit:
             pipe.call(f"{domain}.enable", session)
         pipe.call("Page.navigate", session, url=page.as_uri())
         pipe.wait_for("Page.loadEventFired")
+        yield pipe, session
+
+
+def complaints(pipe: Pipe) -> list[str]:
+    """Give what the page has said on its console, and its errors."""
+    said = ("Log.entryAdded", "Runtime.consoleAPICalled", "Runtime.exceptionThrown")
+    return [json.dumps(event["params"]) for event in pipe.events if event.get("method") in said]
+
+
+def visit(page: Path, profile: Path) -> Visit:
+    """Open a local page, wait until it is loaded, and tell what happened."""
+    with opened(page, profile) as (pipe, session):
         seen = {
             name: pipe.call("Runtime.evaluate", session, expression=code, returnByValue=True)
             for name, code in {
@@ -136,12 +149,7 @@ def visit(page: Path, profile: Path) -> Visit:
             for event in events
             if event.get("method") == "Network.requestWillBeSent"
         ],
-        complaints=[
-            json.dumps(event["params"])
-            for event in events
-            if event.get("method")
-            in ("Log.entryAdded", "Runtime.consoleAPICalled", "Runtime.exceptionThrown")
-        ],
+        complaints=complaints(pipe),
         images=[source for _, source in found["images"]],
         broken_images=[source for whole, source in found["images"] if not whole],
         width=found["width"],

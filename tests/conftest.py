@@ -37,8 +37,9 @@ def pytest_report_header() -> str:
 
 @pytest.fixture(scope="session", autouse=True)
 def _cache_of_the_tests_own(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Keep force maps in a folder of this session, shared by its workers."""
+    """Keep force maps in a folder of this session, shared by its workers; solve each film anew."""
     folder = tmp_path_factory.getbasetemp()
     if "PYTEST_XDIST_WORKER" in os.environ:
         folder = folder.parent
     os.environ.setdefault("ROTORSIM_CACHE", str(Path(folder) / "rotorsim-cache"))
+    os.environ.setdefault("ROTORSIM_FRESH", "1")

@@ -57,9 +57,8 @@ def markdown(r: Results, rows: Sequence[Judged], images: str) -> str:
         "mesh": " x ".join(str(r.mesh[n]) for n in ("circumferential", "axial", "cross_film")),
         "coarse": "" if r.mesh == paper_mesh() else " (coarse: for a quick look)",
         "counts": _counts(rows),
-        "contradicted": _contradicted(rows),
         "figures": "\n\n".join(
-            f"![{caption}]({images}/{name}.png)\n\n*{plain(caption)}*"
+            f"![{caption.partition(':')[0]}]({images}/{name}.png)\n\n*{plain(caption)}*"
             for name, caption in CAPTIONS.items()
         ),
         "claims": _claims(rows),
@@ -141,12 +140,6 @@ def _paper(claim: Claim) -> str:
     return "-" if claim.paper is None else f"{claim.paper:.4g} {claim.unit}".strip()
 
 
-def _tolerance(claim: Claim) -> str:
-    if claim.paper is None:
-        return "all" if claim.measure else "-"
-    return _with_unit(claim.tolerance.absolute(claim.paper), claim.unit)
-
-
 def count(rows: Sequence[Judged]) -> dict[Kind, dict[Verdict, int]]:
     """Return the number of claims by what is compared and by verdict."""
     found = [(row.claim.kind, row.verdict) for row in rows]
@@ -158,18 +151,12 @@ def _counts(rows: Sequence[Judged]) -> str:
     return table(["rows", *Verdict], lines)
 
 
-def _contradicted(rows: Sequence[Judged]) -> str:
-    lines = [
-        f"{row.claim.where}: “{row.claim.quote}” - {row.claim.quantity}: {_computed(row)}"
-        f"{_other_reading(row, rows)}"
-        for row in rows
-        if row.claim.kind is Kind.PRINTED and row.verdict is Verdict.CONTRADICTS
-    ]
-    return "\n".join(f"- {plain(line)}" for line in lines)
-
-
 def _other_reading(row: Judged, rows: Sequence[Judged]) -> str:
-    """Say under which other reading the same words agree."""
+    """Say under which other reading the words agree, or why nothing can be decided."""
+    if row.verdict is Verdict.UNDECIDED:
+        return f"; {row.reason}"
+    if row.claim.kind is not Kind.PRINTED or row.verdict is not Verdict.CONTRADICTS:
+        return ""
     for other in rows:
         claim = other.claim
         if (
@@ -183,13 +170,11 @@ def _other_reading(row: Judged, rows: Sequence[Judged]) -> str:
 
 
 def _claims(rows: Sequence[Judged]) -> str:
-    columns = (
-        "where", "claim", "compared", "quantity", "paper", "computed", "tolerance", "verdict",
-        "reason",
-    )  # fmt: skip
+    columns = ("where", "claim", "compared", "quantity", "paper", "computed", "verdict")
     lines = [
-        (row.claim.where, row.claim.quote, row.claim.kind, row.claim.quantity, _paper(row.claim),
-         _computed(row), _tolerance(row.claim), row.verdict, row.reason)
+        (row.claim.where, row.claim.quote, row.claim.kind,
+         f"{row.claim.quantity}{_other_reading(row, rows)}", _paper(row.claim), _computed(row),
+         row.verdict)
         for row in rows
     ]  # fmt: skip
     return table(columns, lines)
@@ -274,17 +259,6 @@ def _walls(r: Results) -> dict[str, Any]:
         "low_mass": min(masses),
         "high_mass": max(masses),
         "walls": _wall_table(rows),
-        "wall_verdicts": table(
-            ["claim", "paper", *WALL_NAMES.values()],
-            [
-                [
-                    f"{claim.where}: {claim.quantity}",
-                    _paper(claim),
-                    *(f"{shown(j.evidence.value)} {MARKS[j.verdict]}" for j in found.values()),
-                ]
-                for claim, found in judged
-            ],
-        ),
     }
 
 

@@ -183,7 +183,8 @@ def computed_table(
     A table there that agrees is left as it is. While points have failed the journal stays, to be
     resumed from, and so does an older table without such points.
     """
-    from ..study.sweep import Journal, as_table, sweep_points
+    from ..study.finished import Journal
+    from ..study.sweep import as_table, sweep_points
 
     check_workers(workers)
     check_file(path, ".nc", scenario.source)

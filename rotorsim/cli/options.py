@@ -83,6 +83,10 @@ UnitsOption = Annotated[
     option("--units", "SYSTEM", "Show results in si or us (mil, lbf, psi, degF); files stay SI.",
            "units in ~/.config/rotorsim/config.toml, else si"),
 ]  # fmt: skip
+FreshOption = Annotated[
+    bool,
+    typer.Option("--fresh", help="Take no film points from earlier commands."),
+]
 FormatOption = Annotated[
     str | None, option("--format", "FORMATS", "Figures as png, svg, pdf; some, with commas.", "own")
 ]

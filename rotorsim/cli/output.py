@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -37,6 +37,8 @@ _INTERRUPTED = 130
 _TABLE_WIDTH = 100
 _DRAWING = ("run", "stability", "orbit", "control", "transient", "study")
 """Commands that write figures."""
+_SOLVING = ("solve", "table", "run", "report", "stability", "orbit", "control", "study", "explore")
+"""Commands that take film points from each other."""
 
 
 def as_typed(path: Path) -> str:
@@ -127,14 +129,16 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
     """Make a command that returns its exit code safe to call: no traceback for what can go wrong.
 
     The command's first parameter is the `Output`; it is made from the options ``--json`` and
-    ``--quiet`` that `command` need not declare; ``--units`` sets what results are shown in, and
-    ``--format``, ``--width`` and ``--font`` how figures are written, where the command draws some.
+    ``--quiet`` that `command` need not declare; ``--units`` sets what results are shown in,
+    ``--format``, ``--width`` and ``--font`` how figures are written, where the command draws some,
+    and ``--fresh`` that no finished points are taken from earlier commands.
     """
     import inspect
 
     from .options import (
         FontOption,
         FormatOption,
+        FreshOption,
         JsonOption,
         QuietOption,
         UnitsOption,
@@ -142,7 +146,7 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
         ask_figure_files,
     )
 
-    draws = command.__name__ in _DRAWING
+    draws, solves = command.__name__ in _DRAWING, command.__name__ in _SOLVING
 
     @functools.wraps(command)
     def run(*, json_output: bool, quiet: bool, units: str | None, **options: Any) -> None:
@@ -151,7 +155,8 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
             show_units(units or _usual_units())
             if draws:
                 ask_figure_files(*(options.pop(name) for name in ("formats", "width", "font")))
-            code = command(output, **options)
+            with _reusing(output, options.pop("fresh")) if solves else nullcontext():
+                code = command(output, **options)
         except Exception as error:
             code = _explain(_naming_machine(error, options), output)
         except KeyboardInterrupt as stop:
@@ -173,6 +178,7 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
             )
             if draws
         ),
+        *([inspect.Parameter("fresh", keyword, default=False, annotation=FreshOption)] * solves),
         inspect.Parameter("json_output", keyword, default=False, annotation=JsonOption),
         inspect.Parameter("quiet", keyword, default=False, annotation=QuietOption),
         inspect.Parameter("units", keyword, default=None, annotation=UnitsOption),
@@ -181,6 +187,28 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
     run.__signature__ = signature.replace(parameters=own + common)  # type: ignore[attr-defined]
     run.__annotations__ = {entry.name: entry.annotation for entry in own + common}
     return run
+
+
+@contextmanager
+def _reusing(output: Output, fresh: bool) -> Iterator[None]:
+    """Take finished film points from earlier commands, unless `fresh`, and say how many were."""
+    from ..study.finished import FRESH, asked, store_path
+
+    before = os.environ.get(FRESH)
+    if fresh:
+        os.environ[FRESH] = "1"  # for worker processes too
+    asked.clear()
+    try:
+        yield
+    finally:
+        if fresh:
+            os.environ.pop(FRESH)
+            os.environ.update({} if before is None else {FRESH: before})
+    if asked["found"]:
+        output.note(
+            f"{asked['found']} of {asked['wanted']} film points reused from {store_path()} "
+            "(--fresh solves them again)"
+        )
 
 
 def _usual_units() -> str:

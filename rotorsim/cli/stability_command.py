@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -82,7 +84,28 @@ def _held(axis: _Axis, default: str = OWN) -> Any:
 
 def _axis(letter: str) -> Any:
     text = f"Map: {letter} axis, one of {', '.join(_Axis)}; of a machine left.clearance, say."
-    return option(f"--{letter}", "INPUT", text, panel=_MAP)
+    return option(f"--{letter}", "INPUT", text, panel=_MAP, autocompletion=_inputs)
+
+
+def _inputs(ctx: typer.Context, incomplete: str) -> list[str]:
+    """What an axis of a map may be, keys of the scenario included, for the shell's completion."""
+    names = [str(axis) for axis in _Axis]
+    with suppress(Exception):  # no such file, or not yet TOML
+        path = file_or_shipped(Path(ctx.args[0]))  # what is half typed is not taken apart yet
+        names += _keys(tomllib.loads(path.read_text(encoding="utf-8")))
+    return [name for name in names if name.startswith(incomplete)]
+
+
+def _keys(inner: Any, name: str = "") -> Iterator[str]:
+    """Give the dotted keys of all values that may be quantities."""
+    if isinstance(inner, dict):
+        for key, value in inner.items():
+            yield from _keys(value, f"{name}.{key}".lstrip("."))
+    elif isinstance(inner, list) and inner and isinstance(inner[0], dict):
+        for place, value in enumerate(inner):
+            yield from _keys(value, f"{name}[{place}]")
+    elif not isinstance(inner, bool | list) and str(inner)[:1] in "-0123456789":
+        yield name
 
 
 def _axis_values(letter: str) -> Any:

@@ -30,9 +30,10 @@ from ..files.scenario.scenario import entry_kind
 from ..model import ThermalModel, preferred_model
 from ..model.entries import choice
 from ..units import QUANTITIES, parse_quantity
+from .finished import model_digest
 from .planes import OTHERWISE
 from .stability import stability_curves
-from .sweep import as_table, model_digest, refuse_other_sources, stream, sweep_points
+from .sweep import as_table, refuse_other_sources, stream, sweep_points
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import functools
-import hashlib
 import itertools
-import json
 import multiprocessing
 import os
 import signal
@@ -24,7 +21,7 @@ from concurrent.futures import (
     ProcessPoolExecutor,
     wait,
 )
-from contextlib import closing, contextmanager, nullcontext
+from contextlib import ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from multiprocessing.connection import wait as wait_for_any
@@ -33,12 +30,10 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arguments import refuse_path
-from ..atomic import write_text
-from ..bearing.operating_point import OperatingPoint, failed_point, point_from_dict, point_to_dict
+from ..bearing.operating_point import OperatingPoint, failed_point
 from ..errors import InputError
-from ..file_kinds import is_missing, read_bytes
 from ..model import Case
-from ..status import SolveStatus
+from .finished import Journal, PointStore, model_digest
 
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
@@ -192,39 +187,31 @@ def sweep_points(
     """
     if workers is not None and (workers < 1 or executor is not None):
         raise InputError("must be 1 or more, and not given with an executor", value=workers)
-    journal = None if resume is None else Journal(resume)
-    done = _from_journal(journal, cases, speeds)
+    stores: list[Journal | PointStore] = [] if resume is None else [Journal(resume)]
+    done: dict[tuple[int, float], OperatingPoint] = {}
     total = len(cases) * len(speeds)
-    reported = 0
-    for point in done.values():
-        reported += 1
+
+    def finish(place: int, speed: float, point: OperatingPoint) -> None:
+        done[place, speed] = point
         if progress is not None:
-            progress(reported, total, point)
-    chunks = _chunks(cases, speeds, done)
-    # Closed by name: an error in here must stop the workers now, not when the generator is freed.
-    with closing(_computed(chunks, executor, workers, solve_case)) as computed:
-        for chunk, points in computed:
-            if journal is not None:
-                journal.append(chunk.case, points)
+            progress(len(done), total, point)
+
+    with ExitStack() as stack:
+        if solve_case is None:
+            stores.append(stack.enter_context(PointStore()))
+        for index, case in enumerate(cases):
+            for speed in speeds:
+                point = next(filter(None, (one.find(case, speed) for one in stores)), None)
+                if point is not None:
+                    finish(index, speed, point)
+        # Closed by name: an error in here must stop the workers now, not when it is freed.
+        computed = _computed(_chunks(cases, speeds, done), executor, workers, solve_case)
+        for chunk, points in stack.enter_context(closing(computed)):
+            for one in stores:
+                one.add(chunk.case, points)
             for speed, point in zip(chunk.speeds, points, strict=True):
-                done[chunk.number, speed] = point
-                reported += 1
-                if progress is not None:
-                    progress(reported, total, point)
+                finish(chunk.number, speed, point)
     return [done[index, speed] for index in range(len(cases)) for speed in speeds]
-
-
-def _from_journal(
-    journal: Journal | None, cases: Sequence[Case], speeds: Sequence[float]
-) -> dict[tuple[int, float], OperatingPoint]:
-    if journal is None or not len(journal):
-        return {}
-    found = {
-        (index, speed): journal.find(case, speed)
-        for index, case in enumerate(cases)
-        for speed in speeds
-    }
-    return {key: point for key, point in found.items() if point is not None}
 
 
 def _chunks(
@@ -283,131 +270,6 @@ def available_cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
-
-
-_FORMAT = 2
-_MAX_BYTES = 2_000_000_000
-_SUM = "sha256"
-"""Key of a line's checksum, over all of its other entries."""
-_MODEL_SOURCES = ("film", "model", "bearing", "compiled.py")
-
-
-class Journal:
-    """Append-only store of finished operating points.
-
-    A line is written whole and flushed to the disk before the next group starts, so that a kill
-    loses what is being computed and nothing else; a line that a kill cut short, or that does not
-    match its checksum, is dropped when the journal is opened again. Points are found by everything
-    that fixes them (the case and the speed), so that a scenario may gain speeds or change its rotor
-    and still reuse them. A journal of another program version is started afresh.
-
-    path : str or Path. Made with the first point.
-    Raises InputError: If `path` is a file of another kind.
-    """
-
-    def __init__(self, path: str | Path) -> None:
-        self.path: Path = Path(path)
-        self._whole: str | None = None
-        self._points = self._read()
-
-    def __len__(self) -> int:
-        return len(self._points)
-
-    def find(self, case: Case, speed: float) -> OperatingPoint | None:
-        """Return the finished point of `case` at `speed` [rad/s], if there is one."""
-        return self._points.get((_case_digest(case), speed))
-
-    def append(self, case: Case, points: Sequence[OperatingPoint]) -> None:
-        """Add finished `points` of `case`; failed ones are left out, to be tried again."""
-        finished = [point for point in points if point.status is not SolveStatus.FAILED]
-        if not finished:
-            return
-        digest = _case_digest(case)
-        line = {"case": digest, "points": [point_to_dict(point) for point in finished]}
-        if self._whole is not None:
-            # Cuts off what a kill left half written, or the next line would join it.
-            write_text(self.path, self._whole)
-            self._whole = None
-        with self.path.open("a", encoding="utf-8", newline="\n") as stream:
-            stream.write(json.dumps({**line, _SUM: _checksum(line)}) + "\n")
-            stream.flush()
-            os.fsync(stream.fileno())
-        self._points.update({(digest, point.speed): point for point in finished})
-
-    def discard(self) -> None:
-        """Remove the file: its points are kept elsewhere now."""
-        self.path.unlink(missing_ok=True)
-
-    def _read(self) -> dict[tuple[str, float], OperatingPoint]:
-        header = {"rotorsim_journal": _FORMAT, "model": model_digest()}
-        lines = self._lines()
-        if lines and not lines[0].startswith('{"rotorsim_journal"'):
-            raise InputError(
-                "is not a rotorsim sweep journal; choose another name", source=self.path
-            )
-        points: dict[tuple[str, float], OperatingPoint] = {}
-        kept = [json.dumps(header)]
-        if lines and _parse(lines[0]) == header:
-            for line in lines[1:]:
-                group = _points_of(line)
-                if group:
-                    points.update(group)
-                    kept.append(line)
-        self._whole = "\n".join(kept) + "\n"
-        return points
-
-    def _lines(self) -> list[str]:
-        if is_missing(self.path):
-            return []
-        return read_bytes(self.path, _MAX_BYTES).decode("utf-8", errors="replace").splitlines()
-
-
-def _points_of(line: str) -> dict[tuple[str, float], OperatingPoint]:
-    record = _parse(line)
-    if record.pop(_SUM, None) != _checksum(record):
-        return {}
-    try:
-        entries = [point_from_dict(entry) for entry in record["points"]]
-        return {(record["case"], point.speed): point for point in entries}
-    except (KeyError, TypeError, ValueError):
-        return {}
-
-
-def _checksum(record: dict[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(record).encode()).hexdigest()[:24]
-
-
-def _parse(line: str) -> dict[str, Any]:
-    try:
-        record = json.loads(line)
-    except ValueError:
-        return {}
-    return record if isinstance(record, dict) else {}
-
-
-def _case_digest(case: Case) -> str:
-    """Return fingerprint of everything in `case`.
-
-    The model objects print all their values in full.
-    """
-    return hashlib.sha256(repr(case).encode()).hexdigest()[:24]
-
-
-@functools.cache
-def model_digest() -> str:
-    """Return the fingerprint of the program that computes a point: its source files, read once.
-
-    Stricter than a version number, which a developer forgets to raise.
-    """
-    root = Path(__file__).parents[1]
-    digest = hashlib.sha256()
-    for name in _MODEL_SOURCES:
-        entry = root / name
-        files = sorted(entry.rglob("*.py")) if entry.is_dir() else [entry]
-        for file in files:
-            digest.update(file.relative_to(root).as_posix().encode())
-            digest.update(file.read_bytes())
-    return digest.hexdigest()[:24]
 
 
 def refuse_other_sources(wanted: str) -> None:

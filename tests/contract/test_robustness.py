@@ -174,6 +174,26 @@ def test_shipped_names_are_completed():
     assert "dal" in _shipped_names("")
 
 
+def test_keys_of_a_scenario_are_completed():
+    """By the shell's own way: what the program answers to a half-typed command."""
+    words = "rotorsim stability pressure_dam --x speed --y bearing.pocket[0].d"
+    answer = subprocess.run(
+        [sys.executable, "-m", "rotorsim"],
+        env={**os.environ, "_ROTORSIM_COMPLETE": "complete_bash", "COMP_WORDS": words,
+             "COMP_CWORD": "6"},
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert "bearing.pocket[0].depth" in answer.stdout.split(), answer
+    nothing = words.replace("pressure_dam", "no_such_file").replace("bearing.pocket[0].d", "lo")
+    answer = subprocess.run(
+        [sys.executable, "-m", "rotorsim"],
+        env={**os.environ, "_ROTORSIM_COMPLETE": "complete_bash", "COMP_WORDS": nothing,
+             "COMP_CWORD": "6"},
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert answer.stdout.split() == ["load"], answer
+
+
 def test_a_clearance_is_answered_in_the_unit_of_drawings(nonsense):
     done = nonsense("control", "good.toml", "--clearance", "0.18 mm")
     assert done.returncode == 2
@@ -223,7 +243,7 @@ import json, os, random, signal, sys, time
 from concurrent.futures import Executor, Future
 from pathlib import Path
 from typing import ClassVar
-from rotorsim.study.sweep import Journal
+from rotorsim.study.finished import Journal
 from rotorsim.files.scenario import Scenario
 from rotorsim.study.sweep import sweep_points, tabulate
 

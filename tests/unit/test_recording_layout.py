@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from rotorsim.model.orbit import OrbitKind
 from rotorsim.orbit import Orbit
 from rotorsim.show.recording import RecordingContents, write_recording
 from rotorsim.show.recording.film_view import _changing, quantities
-from rotorsim.show.recording.orbit_view import MINIMUM_FILM, _whirl_ratio
+from rotorsim.show.recording.orbit_view import MINIMUM_FILM, _whirl_ratio, log_surroundings
 from rotorsim.show.recording.runs import Run, distinct_speeds
 from rotorsim.study.orbits import FilmFrame
 
@@ -45,7 +46,7 @@ def contents(kind: str, one: Orbit) -> RecordingContents:
 
 
 def overview(path) -> set[str]:
-    """Names, up to a colon, of the views on the page that the file opens with."""
+    """Names, up to a colon or range, of the views on the page that the file opens with."""
     reader = RrdReader(path)
     parts: dict[str, dict[str, list]] = {}
     for chunk in reader.stream(store=reader.blueprints()[0]):
@@ -58,7 +59,7 @@ def overview(path) -> set[str]:
     def views(place: str) -> set[str]:
         part = parts[place]
         if place.startswith("view/"):
-            return {str(part["display_name"][0]).split(":")[0]}
+            return {re.split(r":|(?<=\]),", str(part["display_name"][0]))[0]}
         return set().union(*(views(child) for child in part["contents"]))
 
     (front,) = (part["active_tab"][0] for part in parts.values() if "active_tab" in part)
@@ -159,3 +160,32 @@ def test_one_point_stands_for_runs_that_turn_alike():
     shown = [found for found, _ in distinct_speeds(runs)]
     assert [one.orbit.speed[-1] for one in shown] == [800.0, 1200.0, 1600.0]
     assert shown[1].samples == COUNT
+
+
+class Stream:
+    """Keeps the points of what is logged, by the last part of its entity."""
+
+    def __init__(self) -> None:
+        self.points: dict[str, np.ndarray] = {}
+
+    def log(self, entity, drawn, static):
+        assert static
+        kept = drawn.strips if hasattr(drawn, "strips") else drawn.positions
+        values = np.array(kept.as_arrow_array().flatten().to_pylist(), dtype=float)
+        self.points[entity.rsplit("/", 1)[1]] = values.reshape(-1, 2)
+
+
+@pytest.mark.parametrize("force", [0.0, 5.0])
+def test_what_no_film_holds_is_drawn_about_its_static_position(force):
+    home, radius = np.array([20e-6, 90e-6]), 1e-5
+    turn = np.linspace(0.0, 20.0, COUNT)
+    x, y = home[:, None] + 0.8 * radius * np.array([np.cos(turn), np.sin(turn)])
+    one = orbit_of(turn, x, y, 100.0, radial_clearance=radius, equilibrium=tuple(home))
+    stream = Stream()
+    log_surroundings(stream, Run("a", dataclasses.replace(one, fx=np.full(COUNT, force))))
+    circle, label = stream.points["clearance_um"], stream.points["labels"]
+    middle = 0.5 * (circle.min(axis=0) + circle.max(axis=0))
+    wanted = np.zeros(2) if force else home * (1e6, -1e6)
+    assert middle == pytest.approx(wanted, abs=1e-3)
+    assert np.ptp(circle, axis=0) == pytest.approx(20.0, rel=1e-4)
+    assert np.hypot(*(label - wanted).T).max() < 15.0

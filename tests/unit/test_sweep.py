@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import os
 import signal
@@ -15,78 +14,24 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sweep_cases import CASES, SPEEDS, FakeSolver, fake_point, loads, make_case
 
 import rotorsim
 from rotorsim.bearing.operating_point import (
-    OperatingPoint,
+    failed_point,
     point_from_dict,
     point_to_dict,
     strict_json,
 )
 from rotorsim.errors import InputError
-from rotorsim.film.heat import HeatBalance
 from rotorsim.model import (
-    Bearing,
-    Case,
-    EccentricityTarget,
-    ExponentialViscosity,
-    FilmSettings,
-    Lubricant,
     ThermalModel,
-    ThermalSettings,
 )
-from rotorsim.status import SolveStatus, Stability
-from rotorsim.study.sweep import CHUNK, Journal, failed_point, sweep_points
+from rotorsim.status import SolveStatus
+from rotorsim.study.finished import Journal
+from rotorsim.study.sweep import CHUNK, sweep_points
 
 PACKAGE = Path(rotorsim.__file__).parents[1]
-SPEEDS = [100.0 * (step + 1) for step in range(12)]
-
-
-def make_case(clearance: float = 1e-4, model: ThermalModel = ThermalModel.THD) -> Case:
-    return Case(
-        bearing=Bearing(journal_radius=0.05, length=0.08, radial_clearance=clearance),
-        lubricant=Lubricant(ExponentialViscosity(0.0277, 313.15, 0.034), 860.0, 2000.0, 0.13),
-        film=FilmSettings(),
-        thermal=ThermalSettings(model=model),
-        target=EccentricityTarget(0.5),
-    )
-
-
-def fake_point(case: Case, speed: float, **changes: object) -> OperatingPoint:
-    known = {
-        "status": SolveStatus.CONVERGED,
-        "message": "",
-        "load": speed * case.bearing.radial_clearance,
-        "stiffness": np.array([[1.0, 2.0], [3.0, speed]]),
-        "stability": Stability.THRESHOLD,
-        "critical_mass": 0.1 + 0.2,
-        "warnings": ("one", "two"),
-        "heat_balance": HeatBalance(1.0, 0.5, 0.25, 0.25),
-    }
-    return dataclasses.replace(failed_point(case, speed, ""), **{**known, **changes})
-
-
-class FakeSolver:
-    """Counts its calls and remembers what each started from."""
-
-    def __init__(self, broken: tuple[float, ...] = ()) -> None:
-        self.broken = broken
-        self.calls: list[tuple[float, float, object]] = []
-
-    def __call__(self, case, speed, *, initial=None):
-        self.calls.append((case.bearing.radial_clearance, speed, initial))
-        if speed in self.broken:
-            raise ZeroDivisionError("no film")
-        return fake_point(case, speed), speed
-
-
-CASES = [make_case(1e-4), make_case(1.5e-4)]
-
-
-def loads(points: list[OperatingPoint]) -> list[float]:
-    return [point.load for point in points]
-
-
 EXPECTED = [speed * case.bearing.radial_clearance for case in CASES for speed in SPEEDS]
 
 
@@ -204,7 +149,7 @@ def test_failed_points_are_tried_again_on_resuming(tmp_path):
 
 def test_journal_gives_back_the_same_point(tmp_path):
     point = fake_point(CASES[0], 1234.5678901234567, max_pressure=np.pi * 1e6)
-    Journal(tmp_path / "j").append(CASES[0], [point])
+    Journal(tmp_path / "j").add(CASES[0], [point])
     back = Journal(tmp_path / "j").find(CASES[0], point.speed)
     assert back is not None
     # repr, for NaN is not equal to itself; it prints every float in full.
@@ -216,19 +161,19 @@ def test_a_journal_cut_anywhere_keeps_its_whole_lines(tmp_path, cut):
     path = tmp_path / "j"
     journal = Journal(path)
     for speed in SPEEDS[:3]:
-        journal.append(CASES[0], [fake_point(CASES[0], speed)])
+        journal.add(CASES[0], [fake_point(CASES[0], speed)])
     text = path.read_bytes()
     path.write_bytes(text[:-cut])
     kept = Journal(path)
     assert len(kept) == text[:-cut].count(b"\n") - 1
-    kept.append(CASES[0], [fake_point(CASES[0], 9.0)])
+    kept.add(CASES[0], [fake_point(CASES[0], 9.0)])
     assert Journal(path).find(CASES[0], 9.0) is not None
     assert len(Journal(path)) == len(kept)
 
 
 def test_a_journal_of_another_program_version_is_started_afresh(tmp_path):
     path = tmp_path / "j"
-    Journal(path).append(CASES[0], [fake_point(CASES[0], 1.0)])
+    Journal(path).add(CASES[0], [fake_point(CASES[0], 1.0)])
     lines = path.read_text().splitlines()
     lines[0] = json.dumps({**json.loads(lines[0]), "model": "another"})
     path.write_text("\n".join(lines) + "\n")
@@ -261,7 +206,7 @@ def test_strict_json_holds_no_nan():
 SOLVER = """
 import os, sys, time
 sys.path.insert(0, {tests!r})
-from test_sweep import CASES, SPEEDS, fake_point
+from sweep_cases import CASES, SPEEDS, fake_point
 
 def solve(case, speed, *, initial=None):
     with open({log!r}, "a") as stream:
@@ -286,7 +231,7 @@ def script(tmp_path):
 
     def start(pause: float = 0.0, deadly: tuple[float, ...] = ()) -> subprocess.Popen:
         text = SOLVER.format(
-            tests=str(Path(__file__).parent),
+            tests=str(Path(__file__).parents[1]),
             log=str(tmp_path / "calls"),
             pause=pause,
             deadly=deadly,
@@ -371,7 +316,7 @@ def alive(pid: int) -> bool:
 def test_a_changed_digit_in_the_journal_is_noticed(tmp_path, old):
     path = tmp_path / "j"
     for speed in SPEEDS[:2]:
-        Journal(path).append(CASES[0], [fake_point(CASES[0], speed)])
+        Journal(path).add(CASES[0], [fake_point(CASES[0], speed)])
     text = path.read_text()
     assert old in text
     new = {"0.01": "0.02", "100.0": "900.0", "converged": "diverging"}

@@ -22,7 +22,16 @@ from ...rows import QUANTITIES, RPM, ZERO_CELSIUS, axis_title, in_shown_unit, nu
 from ...study.measured import Measured, curves, shown_as
 from ...study.stability import StabilityCurve
 from ...text import caption
-from .style import MARKERS, MEGA, axes_or_new, figure_of, model_label, model_style, new_axes
+from .style import (
+    MARKERS,
+    MEGA,
+    axes_or_new,
+    figure_of,
+    keep_field,
+    model_label,
+    model_style,
+    new_axes,
+)
 
 Array = NDArray[np.float64]
 
@@ -286,6 +295,7 @@ def _contours(
     low, high = span[0], span[1] if span[1] > span[0] else span[0] + 1.0
     shown = np.clip(values[order].T, low, high)
     along = in_shown_unit(film.y * 1e3, "mm")
+    keep_field(ax, label, angle, along, values[order].T)
     filled = ax.contourf(angle, along, shown, np.linspace(low, high, 25), cmap=colours)
     # Lines carry the shape where the print has no colour.
     if np.ptp(shown) > 0.0:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ...errors import InputError
 from ...rows import quantity
 from ...text import caption
-from .style import axes_or_new, figure_of, model_label, model_style
+from .style import axes_or_new, figure_of, keep_field, model_label, model_style
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -90,6 +90,8 @@ def stability_map(
         for name in (x, y)
     ]
     along, across = shown_as[0].shown(along), shown_as[1].shown(across)
+    for model, rate in rates.items():
+        keep_field(ax, f"growth rate, {model_label(model)} [1/s]", along, across, rate.T)
     ax.set_facecolor("#bbbbbb")
     # A region is where the least of its (signed) growth rates is positive: smooth borders.
     signed = (

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import matplotlib as mpl
 import numpy as np
@@ -95,6 +96,23 @@ def axes_or_new(ax: Axes | None, size: tuple[float, float]) -> Axes:
     if ax is not None:
         return ax
     return new_axes(1, 1, size)[1][0, 0]
+
+
+_fields: WeakKeyDictionary[Axes, list[tuple[str, Any, Any, Any]]] = WeakKeyDictionary()
+
+
+def keep_field(ax: Axes, name: str, x: Any, y: Any, rows: Any) -> None:
+    """Keep the values behind contours, which matplotlib forgets, for who points at them.
+
+    name : With its unit in brackets, as an axis' label.
+    rows : (y.size, x.size) array
+    """
+    _fields.setdefault(ax, []).append((name, x, y, rows))
+
+
+def fields_of(ax: Axes) -> list[tuple[str, Any, Any, Any]]:
+    """Return what was kept of the axes, as `keep_field` was given it."""
+    return _fields.get(ax, [])
 
 
 def figure_of(ax: Axes) -> Figure:

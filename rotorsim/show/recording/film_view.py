@@ -19,6 +19,8 @@ from ...rows import QUANTITIES, RPM, ZERO_CELSIUS
 from ...study.orbits import FilmFrame
 from . import surfaces
 from .runs import (
+    ALARM,
+    BACKGROUND,
     LINE,
     TEXT,
     Run,
@@ -30,8 +32,6 @@ from .runs import (
     tick_text,
 )
 
-BACKGROUND = [13, 13, 16]
-"""Of the views in three dimensions, in light and dark theme alike."""
 _MOVING_SHARE = 0.95
 """Of the moments of a run, whose peak pressures the scale holds."""
 _JOURNAL_LIMIT = 100_000
@@ -260,7 +260,7 @@ def _log_bush(stream: rr.RecordingStream, root: str, film: FilmFrame) -> None:
         rr.Arrows3D(
             origins=[[bore, 0, half], [0, bore, half]],
             vectors=[[reach - bore, 0, 0], [0, reach - bore, 0]],
-            colors=[LINE, LINE],
+            colors=[TEXT, TEXT],
             labels=["x, load", "y"],
             show_labels=True,
             radii=0.012 * reach,
@@ -300,7 +300,7 @@ def _log_journal(
             vertex_positions=vertices,
             triangle_indices=triangles,
             vertex_normals=normals,
-            albedo_factor=(150, 155, 165),
+            albedo_factor=(150, 155, 165, 110),  # the film behind it shows
         ),
         static=True,
     )
@@ -311,7 +311,7 @@ def _log_journal(
     ]
     stream.log(
         f"{entity}/mark",
-        rr.LineStrips3D(marks, radii=rr.Radius.ui_points(2.0), colors=(255, 80, 60)),
+        rr.LineStrips3D(marks, radii=rr.Radius.ui_points(2.0), colors=ALARM),
         static=True,
     )
     scale = surfaces.exaggeration(film) * surfaces.MILLI
@@ -375,11 +375,13 @@ def _log_scale(stream: rr.RecordingStream, root: str, quantity: _Quantity, film:
             static=True,
         )
     _log_unwrapped_axes(stream, f"{root}/unwrapped/axes", film)
-    note = f"clearance drawn {surfaces.exaggeration(film):.0f} times too large"
+    note = (
+        f"clearance drawn {surfaces.exaggeration(film):.0f} times too large\nred: mark on the shaft"
+    )
     stream.log(
         f"{root}/wrapped/note",
         rr.Points3D(
-            [[0.0, 1.95 * size, -half]], labels=[note], show_labels=True, radii=0.0, colors=LINE
+            [[0.0, 1.95 * size, -half]], labels=[note], show_labels=True, radii=0.0, colors=TEXT
         ),
         static=True,
     )

@@ -29,8 +29,8 @@ from ...text import markdown
 from ..figures.machine import machine_campbell
 from . import surfaces
 from .charts import Chart
-from .film_view import BACKGROUND, log_films
-from .runs import ALARM, LINE, TEXT, Run, speed_index, thin, time_index
+from .film_view import log_films
+from .runs import ALARM, BACKGROUND, LINE, TEXT, Run, speed_index, thin, time_index
 from .write import film_views, write_stream
 
 if TYPE_CHECKING:

@@ -22,8 +22,7 @@ from ...model.shaft import Disc
 from ...orbit import Orbit
 from ...orbit.motion import Motion, Station
 from ...rotor import Beam
-from .film_view import BACKGROUND
-from .runs import ALARM, LINE, TEXT, TIME, Run, run_index, thin
+from .runs import ALARM, BACKGROUND, LINE, TEXT, TIME, Run, run_index, thin
 from .surfaces import MILLI, cylinder
 
 ROOT = "machine"

@@ -19,7 +19,9 @@ from ...orbit.analysis import once_per_turn
 from ...rows import RPM
 from .runs import (
     ALARM,
+    BACKGROUND,
     FAINT,
+    LABEL,
     LINE,
     REVOLUTIONS,
     SAMPLE_LIMIT,
@@ -93,7 +95,7 @@ def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
     """
     root = _orbit_entity(run.name)
     reach = (1.32 * run.reach if zoom is None else zoom) * MICRO
-    x0, y0 = (0.0, 0.0) if zoom is None else run.orbit.equilibrium
+    x0, y0 = run.centre if zoom is None else run.orbit.equilibrium
     centre = _view_points(x0, y0).astype(float)
     # The force's scale belongs to the whole circle.
     hidden = [] if zoom is None else [f"- /{root}/film_force_N"]
@@ -119,6 +121,7 @@ def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
             y_range=[centre[1] - reach, centre[1] + reach],
         ),
         contents=["$origin/**", *hidden],
+        background=BACKGROUND,
         overrides={f"/{root}/trail_um": trail},
     )
 
@@ -127,21 +130,26 @@ def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
     """Write what stands still: contact line, axes, labels, static position, Poincare points."""
     root = _orbit_entity(run.name)
     reach = run.reach * MICRO
-    line = _view_points(*run.orbit.boundary.T)
-    arrow = reach * 1.1
+    centre = _view_points(*run.centre)
+    line = _view_points(*run.orbit.boundary.T) + centre
+    radius = f"{run.orbit.radial_clearance * MICRO:.4g} µm"
+    words = ["x, load", "y", f"radius {radius}"]
+    if np.any(run.force):
+        words = ["x, load", "y", f"journal touches, c = {radius}", "green: film force"]
+    corners = [[1.1, -0.04], [0.0, -1.2], [0.0, 1.06], [-0.8, -1.2]][: len(words)]
     stream.log(
         f"{root}/clearance_um",
         rr.LineStrips2D([line], radii=rr.Radius.ui_points(1.2), colors=TEXT),
         static=True,
     )
-    cross = [[[-reach, 0], [reach, 0]], [[0, -reach], [0, reach]]]
+    cross = centre + np.array([[[-reach, 0], [reach, 0]], [[0, -reach], [0, reach]]])
     stream.log(
         f"{root}/axes",
         rr.LineStrips2D(cross, radii=rr.Radius.ui_points(0.4), colors=FAINT),
         static=True,
     )
     arc = np.radians(np.linspace(35.0, 58.0, 24))
-    turning = 1.12 * reach * np.stack([np.cos(arc), -np.sin(arc)], axis=-1)
+    turning = centre + 1.12 * reach * np.stack([np.cos(arc), -np.sin(arc)], axis=-1)
     head = turning[-1] + 0.06 * reach * np.array([[0.95, -0.3], [0.0, 0.0], [0.25, 0.95]])
     stream.log(
         f"{root}/rotation",
@@ -151,9 +159,9 @@ def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
     log_labels(
         stream,
         f"{root}/labels",
-        [[arrow, -0.04 * reach], [0, -1.2 * reach], [0, 1.06 * reach]],
-        ["x, load", "y", f"journal touches, c = {run.orbit.radial_clearance * MICRO:.4g} µm"],
-        LINE,
+        (centre + reach * np.array(corners)).tolist(),
+        words,
+        LABEL,
     )
     stream.log(
         f"{root}/equilibrium_um",
@@ -371,10 +379,13 @@ def series_of(runs: Sequence[Run], wanted: Sequence[Series] = _ALL_SERIES) -> li
 def series_view(series: Series, runs: Sequence[Run]) -> rrb.TimeSeriesView:
     """Plot of one quantity of all runs, in a window where there is too much to draw."""
     low, high = _vertical_range(series, runs)
+    title = series.title
+    if series in (LOAD, ACTUATOR_FORCE):  # of large numbers the viewer writes 0 alone
+        title += f", {low:.3g} to {high:.3g}"
     return rrb.TimeSeriesView(
         origin=f"/series/{series.entity}",
         contents=[f"$origin/{run.name}" for run in runs],
-        name=series.title,
+        name=title,
         axis_y=rrb.ScalarAxis(range=(low, high)),
         plot_legend=rrb.PlotLegend(visible=True, corner=rrb.Corner2D.LeftTop),
         time_ranges=_window(series, runs),

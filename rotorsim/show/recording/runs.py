@@ -23,6 +23,10 @@ TEXT = (230, 230, 230)
 LINE = (150, 150, 150)
 FAINT = (80, 80, 80)
 ALARM = (255, 80, 60)
+LABEL = (255, 240, 190)
+"""Words in a plane: on the viewer's own ground, which is grey where its theme is light."""
+BACKGROUND = [13, 13, 16]
+"""Of every view, whatever the viewer's theme: the colours are chosen for it."""
 
 TIME = "time"
 """Seconds of the simulation."""
@@ -54,6 +58,11 @@ class Run(NamedTuple):
     def samples(self) -> int:
         """Number of samples."""
         return self.orbit.t.size
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Middle of its picture [m]: the bearing's, or where no film is the static position."""
+        return (0.0, 0.0) if np.any(self.force) else self.orbit.equilibrium
 
     @property
     def force(self) -> Array:

@@ -206,10 +206,11 @@ def _notes(contents: RecordingContents) -> str:
         "- Timelines: `time` [s], `milli-revolutions` (1000 is one turn of the shaft) and"
         " `speed_rpm` (film and eigenvalues from speed to speed).",
         "- Orbits: x along the load, y 90 degrees ahead in the direction of rotation"
-        " (counter-clockwise); at the white line the journal touches the bush.",
+        " (counter-clockwise). White line: the journal touches the bush; white dot: the journal,"
+        " with its last turns; green arrow: the film's force on it; grey dot: static position.",
         "- Bearing: true proportions but for the clearance, whose exaggeration is written there;"
-        " the film's height is its pressure, or its temperature: the mean across the film, whose"
-        " hottest place the caption gives, too.",
+        " the red line is a mark that turns with the shaft; the film's height is its pressure, or"
+        " its temperature: the mean across the film, whose hottest place the caption gives, too.",
     ]
     if any(once_per_turn(orbit) is not None for orbit in contents.orbits):
         lines.append("- Red points: the journal once per turn of the shaft, in the steady part.")

@@ -15,17 +15,22 @@ _SVG_LIMIT = 400_000
 
 
 def figure(drawn: Figure, caption: str) -> str:
-    """Return the figure within the page: as SVG, or as pixels where that would grow long."""
+    """Return the figure within the page: as SVG, or as pixels where that would grow long.
+
+    With what `figures.js` shows of it under the pointer.
+    """
     from ..figures.style import figure_bytes
+    from .hover import hover_data
 
     data, kind = figure_bytes(drawn, "svg"), "svg+xml"
     if len(data) > _SVG_LIMIT:
         data, kind = figure_bytes(drawn, "png"), "png"
     coded = base64.b64encode(data).decode("ascii")
-    said, width = escape(caption), drawn.get_figwidth()
+    said, width, planes = escape(caption), drawn.get_figwidth(), hover_data(drawn)
+    known = f' data-planes="{escape(planes)}"' if planes else ""
     return (
-        f'<figure><img style="width:{width:.2f}in" alt="{said}" '
-        f'src="data:image/{kind};base64,{coded}">'
+        f'<figure><div class="frame"{known}><img style="width:{width:.2f}in" alt="{said}" '
+        f'src="data:image/{kind};base64,{coded}"></div>'
         f"<figcaption>{said}</figcaption></figure>"
     )
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import base64
 import datetime
+import hashlib
 from collections.abc import Iterator
 from html import escape
 from importlib.resources import files
@@ -79,15 +81,22 @@ def report_page(
 def document(title: str, body: str) -> str:
     """Return the whole page of HTML from its title and what it holds."""
     said = escape(title)
-    style = (files("rotorsim.show.report") / "style.css").read_text(encoding="utf-8")
-    # The policy forbids whatever would have to be fetched; nothing here runs as a script.
-    policy = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+    style, script = (
+        (files("rotorsim.show.report") / name).read_text(encoding="utf-8")
+        for name in ("style.css", "figures.js")
+    )
+    # The policy forbids whatever would have to be fetched, and any other script.
+    digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode("ascii")
+    policy = (
+        "default-src 'none'; style-src 'unsafe-inline'; img-src data:; "
+        f"script-src 'sha256-{digest}'"
+    )
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<link rel="icon" href="data:,">\n<title>{said}</title>\n<style>\n{style}</style>\n'
-        f"</head>\n<body>\n{body}\n</body>\n</html>\n"
+        f"</head>\n<body>\n{body}\n<script>{script}</script>\n</body>\n</html>\n"
     )
 
 
