@@ -397,7 +397,7 @@ def state_space(
         raise InputError("a support has no coefficients here", key="speed", value=speed)
     a, b = first_order(*matrices)
     n, heavy = plant.rotor.size, massive_unknowns(matrices[0])
-    signals = [(_signal_name(node), unknown) for node, unknown in plant.unknowns]
+    signals = [(signal_name(node), unknown) for node, unknown in plant.unknowns]
 
     def called(word: str, which: range | list[int]) -> list[str]:
         return ["".join((signals[i][0], word, signals[i][1])) for i in which]
@@ -412,8 +412,8 @@ def state_space(
     )  # fmt: skip
 
 
-def _signal_name(node: str) -> str:
-    """Return the prefix of a node's signals, of letters, digits and underscores."""
+def signal_name(node: str) -> str:
+    """Return the beginning of a node's signals, of letters, digits and underscores."""
     return re.sub(r"\W+", "_", node) + "_" if node else ""
 
 

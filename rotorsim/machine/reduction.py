@@ -146,6 +146,8 @@ def response(
 ) -> Callable[[ArrayLike], ComplexArray]:
     """Return the frequency response (n, outputs, inputs) as a function of frequency (n,) [rad/s].
 
+    A complex frequency asks for s = i frequency off the imaginary axis.
+
     By the eigenvectors, or by one solution for each frequency where they are nearly parallel.
     """
     a, b, c = (np.asarray(part, dtype=float) for part in (a, b, c))
@@ -155,7 +157,7 @@ def response(
     shown, driven = (c @ vectors, np.linalg.solve(vectors, b)) if modal else (c, b)
 
     def at(frequency: ArrayLike) -> Any:
-        s: Any = 1j * np.atleast_1d(np.asarray(frequency, dtype=float))
+        s: Any = 1j * np.atleast_1d(np.asarray(frequency))
         if not a.size:
             return np.broadcast_to(feed.astype(complex), (s.size, *feed.shape))
         if modal:

@@ -17,6 +17,7 @@ from ..errors import InputError
 from ..model.loads import BaseMotion, BaseShock, HarmonicForce, Load, StepForce
 from ..rotor import Rotor
 from .analysis import recognise
+from .controlled import with_controller
 from .film_force import SolvedFilmForce
 from .forces import ActuatedFilm, LinearForce, find_equilibrium
 from .motion import CHUNK_REVOLUTIONS, Motion, MotionProblem, last_pieces, pieces_of
@@ -110,7 +111,7 @@ def motion_problem(problem: OrbitProblem, equilibrium: tuple[float, float]) -> M
     circle = bore is None or (bore.is_plain and bore.is_symmetric)
 
     def film_left(q: Array) -> Array:
-        return problem.film_at(q) - least
+        return problem.film_at(q[:, :size]) - least
 
     stops = problem.stop_at_contact
     system = MotionSystem(
@@ -131,10 +132,16 @@ def motion_problem(problem: OrbitProblem, equilibrium: tuple[float, float]) -> M
             key="orbit.initial_displacement",
             value=problem.initial_displacement,
         )
-    return MotionProblem(
+    motion = MotionProblem(
         system, problem.schedule, start, velocity, start, (), problem.samples_per_revolution,
         problem.tolerance, contact=film_left if stops and not circle else None,
     )  # fmt: skip
+    if problem.controller is None:
+        return motion
+    still = replace(problem, initial_displacement=(0.0, 0.0), initial_state=None)
+    return with_controller(
+        motion, problem.controller, _start(still, equilibrium)[0], rotor.unknowns
+    )
 
 
 def _static_load(problem: OrbitProblem) -> Array:
@@ -218,12 +225,17 @@ def _orbit(
     problem: OrbitProblem, piece: Motion, film: Array, equilibrium: tuple[float, float]
 ) -> Orbit:
     """Return one piece's samples as an orbit; `film` is the force on the journal (m, 2) [N]."""
-    q, v = piece.q, piece.v
+    size = problem.rotor.size
+    q, v = piece.q[:, :size], piece.v[:, :size]
     x, y, vx, vy = (np.ascontiguousarray(one) for one in (q[:, 0], q[:, 1], v[:, 0], v[:, 1]))
     actuator = np.zeros_like(film)
     if isinstance(problem.force, ActuatedFilm):
         actuator = problem.force.actuator_force(x, y, vx, vy)
         film = film - actuator
+    if problem.controller is not None:
+        along = [[name.endswith(f"_{axis}") for axis in "xy"] for name in
+                 problem.controller.actuators]  # fmt: skip
+        actuator = actuator + piece.actuator_force @ np.array(along, dtype=float)
     message = piece.message
     if piece.status is OrbitStatus.TOUCH_DOWN:
         when = piece.events[0].time

@@ -16,6 +16,7 @@ import numpy as np
 from ..arrays import Array, Indices
 from ..errors import InputError
 from ..threads import on_one_blas_thread
+from .controlled import Advance, Answer, Loop, Sampled
 from .kernels import shaft
 from .march import DONE, TOUCHED, march, repeat
 from .orbit import Orbit, OrbitEvent, OrbitStatus
@@ -90,6 +91,7 @@ class MotionProblem:
         excitation.
     contact : Displacements (m, n) to the film (m,) that is left before the run ends [m]; None: that
         of round journals in round films.
+    loop : The controller, see `rotorsim.orbit.controlled`.
     """
 
     system: MotionSystem
@@ -106,6 +108,7 @@ class MotionProblem:
     reduction_error: float = 0.0
     forcing: tuple[float, ...] = ()
     contact: Callable[[Array], Array] | None = None
+    loop: Loop | None = None
 
     def film_left(self, q: Array) -> Array:
         """Return the film (m,) that is left at displacements (m, n) before the run ends [m]."""
@@ -214,6 +217,12 @@ class Motion:
     def link_force(self, link: Link) -> Array:
         """Return the force (m, 2) of a link on its inner body [N]."""
         return self.problem.system.link_forces(link, self.q, self.v, self.speed)
+
+    @property
+    def actuator_force(self) -> Array:
+        """Return the forces (m, k) of a controller's actuators [N]; k = 0 without one."""
+        loop = self.problem.loop
+        return np.zeros((self.t.size, 0)) if loop is None else loop.forces(self.q, self.v)
 
     def orbit(self, name: str) -> Orbit:
         """Return the motion of one station for analysis, figures and recordings of an `Orbit`.
@@ -397,12 +406,15 @@ def pieces_of(problem: MotionProblem, revolutions: int = CHUNK_REVOLUTIONS) -> I
     edges = _edges(problem, schedule, revolutions)
     count = math.floor(schedule.revolutions * samples + 1e-9) + 1
     q, v, done = problem.start, problem.velocity, 0
-    if problem.system.linear and schedule.is_constant:
-        advance: _Advance = _Exact(problem, schedule)
+    sampled = problem.loop is not None and problem.loop.feedback.sample_time > 0.0
+    if problem.system.linear and schedule.is_constant and not sampled:
+        advance: Advance = _Exact(problem, schedule)
     elif problem.system.compilable:
         advance = _Rosenbrock(problem, schedule)
     else:
         advance = _Scipy(problem, schedule)
+    if problem.loop is not None and sampled:
+        advance = Sampled(advance, problem.loop)
     for start, stop in itertools.pairwise(edges):
         last = stop == edges[-1]
         turned = float(schedule.angle_at(stop)) / (2.0 * np.pi) * samples
@@ -419,10 +431,6 @@ def pieces_of(problem: MotionProblem, revolutions: int = CHUNK_REVOLUTIONS) -> I
         )  # fmt: skip
         if ended:
             return
-
-
-_Answer = tuple[tuple[Array, Array], OrbitStatus, str, Array, Array, *tuple[OrbitEvent, ...]]
-_Advance = Callable[[Array, Array, float, float, Array], _Answer]
 
 
 def _edges(problem: MotionProblem, schedule: SpeedSchedule, revolutions: int) -> list[float]:
@@ -466,7 +474,7 @@ class _Rosenbrock:
             problem.plain, problem.system.scale, problem.relative_tolerance, step,
         )  # fmt: skip
 
-    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> Answer:
         problem, begin = self.problem, (q, v)
         qs, vs, count, status, end, q, v, self.step = self._march(
             q, v, start, stop, times, self.step
@@ -543,7 +551,7 @@ class _Exact:
             a[cos, cos + 1], a[cos + 1, cos] = -frequency, frequency
         return a, [frequency for frequency, _ in forces]
 
-    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> Answer:
         from scipy.linalg import expm
 
         a, frequencies = self._generator(0.5 * (start + stop))
@@ -636,7 +644,7 @@ class _Scipy:
         found[n:, n:] = -self.inverse @ (damping + more_damping)
         return found
 
-    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> _Answer:
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> Answer:
         from scipy.integrate import solve_ivp
 
         problem, n = self.problem, self.size

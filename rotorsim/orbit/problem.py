@@ -10,6 +10,7 @@ from scipy.linalg import block_diag
 
 from ..arrays import Array
 from ..errors import InputError
+from ..machine.output_feedback import OutputFeedback
 from ..model import Bearing
 from ..model.loads import Load
 from ..rotor import Rotor
@@ -152,6 +153,8 @@ class OrbitProblem:
     relative_tolerance : Of one integration step; the absolute one is 1e-3 of it times the
         clearance. None: 1e-8 with linear coefficients, whose growth is to be measured, 1e-7 with a
         nonlinear film, 1e-5 with one that is solved at each step.
+    controller : From displacements about the rest position to forces on the rotor's nodes,
+        continuous or sampled; see `rotorsim.machine.output_feedback.OutputFeedback`.
     """
 
     force: BearingForce
@@ -171,6 +174,7 @@ class OrbitProblem:
     kind: str = ""
     note: str = ""
     relative_tolerance: float | None = None
+    controller: OutputFeedback | None = None
 
     @property
     def tolerance(self) -> float:

@@ -137,6 +137,18 @@ class Harmonic(NamedTuple):
     stop: float = math.inf
 
 
+class Limited(NamedTuple):
+    """Forces columns @ clip(rows @ (q, v) - offset), each between - limit and limit.
+
+    rows, columns : (m, 2 n) and (n, m) arrays.
+    """
+
+    rows: Array
+    offset: Array
+    columns: Array
+    limit: float
+
+
 @dataclass(frozen=True, eq=False)
 class MotionSystem:
     """Equations of motion.
@@ -166,6 +178,7 @@ class MotionSystem:
     links: tuple[Link, ...] = ()
     block: LinearBlock | None = None
     loads: tuple[Harmonic, ...] = ()
+    limited: Limited | None = None
     names: tuple[tuple[str, str], ...] = field(default=(), repr=False)
     turned_offset: Array | None = None
 
@@ -185,7 +198,7 @@ class MotionSystem:
     @cached_property
     def linear(self) -> bool:
         """Whether all forces are linear in the motion."""
-        return not self.links
+        return not self.links and self.limited is None
 
     @cached_property
     def compilable(self) -> bool:
@@ -241,6 +254,9 @@ class MotionSystem:
                 stiffness[place] += more_stiffness
                 damping[place] += more_damping
                 index = index[:0]
+        limited = self.limited or Limited(
+            np.zeros((0, 2 * self.size)), np.zeros(0), np.zeros((self.size, 0)), math.inf
+        )
         real = [np.array([u.real for _, u in self.unbalance]).reshape(-1, self.size),
                 np.array([u.imag for _, u in self.unbalance]).reshape(-1, self.size)]  # fmt: skip
         return Plain(
@@ -257,6 +273,8 @@ class MotionSystem:
             link_numbers=np.array(floats, dtype=float).reshape(-1, 10),
             numbers=np.concatenate(numbers), tables=np.concatenate(tables), block=index,
             block_table=table, block_low=low, block_step=step,
+            limit_rows=_array(limited.rows), limit_offset=_array(limited.offset),
+            limit_columns=_array(limited.columns), limit=float(limited.limit),
         )  # fmt: skip
 
     def solved(self, q: Array, v: Array, speed: float) -> Array:
@@ -372,6 +390,10 @@ class Plain(NamedTuple):
     block_table: Array
     block_low: float
     block_step: float
+    limit_rows: Array
+    limit_offset: Array
+    limit_columns: Array
+    limit: float
 
 
 def _array(values: NDArray[np.floating]) -> Array:
@@ -473,7 +495,19 @@ def force_on(t: float, q: Array, v: Array, phi: float, w: float, alpha: float, p
         x, y, vx, vy, ring = link_place(k, q, v, p)
         fx, fy, torque = link_force(k, x, y, vx, vy, ring, w, p)
         _add(force, p.links[k], fx, fy, torque)
+    for k in range(p.limit_offset.size):
+        wanted = limited_force(k, q, v, p)
+        force += p.limit_columns[:, k] * min(max(wanted, -p.limit), p.limit)
     return force
+
+
+@compiled()
+def limited_force(k: int, q: Array, v: Array, p: Plain) -> float:
+    """Return what a limited force would be without its limit."""
+    total = -p.limit_offset[k]
+    for i in range(q.size):
+        total += p.limit_rows[k, i] * q[i] + p.limit_rows[k, q.size + i] * v[i]
+    return total
 
 
 @compiled()
@@ -535,6 +569,10 @@ def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[A
             for j in range(m):
                 stiffness[p.block[i], p.block[j]] += row[i * m + j]
                 damping[p.block[i], p.block[j]] += row[(m + i) * m + j]
+    for k in range(p.limit_offset.size):
+        if abs(limited_force(k, q, v, p)) < p.limit:
+            stiffness -= np.outer(p.limit_columns[:, k], p.limit_rows[k, : q.size])
+            damping -= np.outer(p.limit_columns[:, k], p.limit_rows[k, q.size :])
     for k in range(p.links.shape[0]):
         link, slopes = p.links[k], _slopes(k, q, v, w, scale, p)
         for j in range(5):

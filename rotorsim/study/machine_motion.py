@@ -145,7 +145,7 @@ class _Builder(MotionParts):
         if inner.size and modes is not None:
             held = inner[:, None], inner
             offset[inner] = np.linalg.lstsq(rotor.stiffness[held], static[inner], rcond=None)[0]
-        matrices = {name: basis.T @ matrix @ basis for name, matrix in whole.items()}
+        matrices: dict[str, Any] = {n: basis.T @ matrix @ basis for n, matrix in whole.items()}
         constant = basis.T @ (static - whole["stiffness"] @ offset)
         links = tuple(_moved(link, place) for link in self.links)
         scale = self._scale(basis)

@@ -1,0 +1,209 @@
+"""A motion in time with a controller of `rotorsim.machine.output_feedback`, continuous or sampled.
+
+A continuous controller's states are the velocities of further unknowns of mass 1, and the held
+forces of a sampled one are such velocities that nothing changes but the controller: all integrators
+of a machine's motion take them as they take the machine.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.linalg import block_diag
+
+from ..arrays import Array
+from ..errors import InputError
+from ..machine.control import signal_name
+from ..machine.output_feedback import OutputFeedback, unknown_signal
+from ..machine.reduction import probing_frequencies, response
+from .orbit import OrbitEvent, OrbitStatus
+from .problem import SpeedSchedule
+from .system import Limited
+
+if TYPE_CHECKING:
+    from .motion import MotionProblem
+
+Answer = tuple[tuple[Array, Array], OrbitStatus, str, Array, Array, *tuple[OrbitEvent, ...]]
+Advance = Callable[[Array, Array, float, float, Array], Answer]
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A controller in a motion: what it measures, and where its forces are.
+
+    rows : (p, 2 n) array. From unknowns and their rates to the sensors; `offset` (p,) is taken off.
+    size : Unknowns without those of the controller.
+    """
+
+    feedback: OutputFeedback
+    rows: Array
+    offset: Array
+    size: int
+
+    def measured(self, q: Array, v: Array) -> Array:
+        """Return what the sensors read (..., p), from (..., n) displacements and rates."""
+        both = np.concatenate([q[..., : self.size], v[..., : self.size]], axis=-1)
+        return both @ self.rows.T - self.offset
+
+    def forces(self, q: Array, v: Array) -> Array:
+        """Return the actuators' forces (..., m) along a motion [N]."""
+        inside = v[..., self.size :]
+        if self.feedback.sample_time:
+            return inside
+        wanted = inside @ self.feedback.c.T + self.measured(q, v) @ self.feedback.d.T
+        return np.clip(wanted, -self.feedback.max_force, self.feedback.max_force)
+
+
+def with_controller(
+    problem: MotionProblem, feedback: OutputFeedback, rest: Array,
+    names: Sequence[tuple[str, str]],
+) -> MotionProblem:  # fmt: skip
+    """Return the motion with a controller that measures from a rest position.
+
+    rest : (n,) array. Displacements at which the sensors read 0, so that no static load is carried.
+    names : Node and unknown of each displacement of the whole machine, which signals are named by.
+    Raises InputError: A signal is not there, or a torque drives what a sampled controller holds.
+    """
+    system, n = problem.system, problem.system.size
+    dt = feedback.sample_time
+    if dt and not isinstance(problem.drive, SpeedSchedule):
+        raise InputError("needs a prescribed speed, no torque", key="controller.sample_time")
+    place = {(signal_name(node), unknown): i for i, (node, unknown) in enumerate(names)}
+    known = {
+        word: {"".join((node, word, "_", axis)): i for (node, axis), i in place.items()}
+        for word in ("displacement", "velocity", "force")
+    }
+    rows, offset = [], []
+    for name in feedback.sensors:
+        word = "velocity" if name in known["velocity"] else "displacement"
+        if name not in known[word]:
+            raise unknown_signal("sensors", name, [*known["displacement"]])
+        row = system.basis[known[word][name]]
+        still = np.zeros(n)
+        rows.append(np.concatenate([row, still] if word == "displacement" else [still, row]))
+        offset.append(row @ rest if word == "displacement" else 0.0)
+    for name in feedback.actuators:
+        if name not in known["force"]:
+            raise unknown_signal("actuators", name, [*known["force"]])
+    acting = system.basis[[known["force"][name] for name in feedback.actuators]].T
+    loop = Loop(feedback, np.array(rows), np.array(offset), n)
+    more = len(feedback.actuators) if dt else len(feedback.a)
+    a, b, c, d, w = feedback.a, feedback.b, feedback.c, feedback.d, feedback.w
+    wider: dict[str, Any] = {
+        name: block_diag(getattr(system, name), part)
+        for name, part in (
+            ("mass", np.eye(more)),
+            ("damping", np.zeros((more, more)) if dt else w @ c - a),
+            *((name, np.zeros((more, more)))
+              for name in ("gyroscopic", "stiffness", "circulatory")),
+        )
+    }  # fmt: skip
+    scale, constant = np.ones(more), np.zeros(more)
+    if dt:
+        wider["damping"][:n, n:] = -acting
+    else:
+        felt = b - w @ d
+        wider["stiffness"][n:, :n] = -felt @ loop.rows[:, :n]
+        wider["damping"][n:, :n] = -felt @ loop.rows[:, n:]
+        constant = -felt @ loop.offset
+        seen = d @ loop.rows
+        wider["limited"] = Limited(
+            np.hstack([seen[:, :n], np.zeros((len(d), more)), seen[:, n:], c]), d @ loop.offset,
+            np.vstack([acting, w]), feedback.max_force,
+        )  # fmt: skip
+        scale = _sizes(feedback, float(system.scale.min()), max(problem.drive.speeds))
+    none = np.zeros(more)
+    system = replace(
+        system, **wider, constant=np.concatenate([system.constant, constant]),
+        scale=np.concatenate([system.scale, scale]),
+        basis=np.hstack([system.basis, np.zeros((len(system.basis), more))]),
+        unbalance=tuple((t, np.concatenate([u, none])) for t, u in system.unbalance),
+        loads=tuple(
+            load._replace(amplitude=np.concatenate([load.amplitude, none]))
+            for load in system.loads
+        ),
+    )  # fmt: skip
+    start, velocity, equilibrium = (
+        np.concatenate([part, none])
+        for part in (problem.start, problem.velocity, problem.equilibrium)
+    )
+    note = "; ".join(filter(None, (problem.note, _words(feedback))))
+    return replace(
+        problem, system=system, start=start, velocity=velocity, equilibrium=equilibrium, note=note,
+        loop=loop,
+    )  # fmt: skip
+
+
+def _sizes(feedback: OutputFeedback, length: float, speed: float) -> Array:
+    """Return the displacement of a controller's unknown that counts as large, for tolerances.
+
+    Of a motion of a length at the frequencies of the controller and the shaft.
+    """
+    if not len(feedback.a):
+        return np.zeros(0)
+    frequencies = np.append(probing_frequencies(np.linalg.eigvals(feedback.a)), speed)
+    frequencies = frequencies[(frequencies > 0.01 * speed) & (frequencies < 10.0 * speed)]
+    states = response(feedback.a, feedback.b, np.eye(len(feedback.a)))(frequencies)
+    sizes = np.abs(states).sum(axis=2).max(axis=0) * length / speed
+    return np.maximum(sizes, 1e-6 * sizes.max(initial=1e-300))
+
+
+def _words(feedback: OutputFeedback) -> str:
+    limit = feedback.max_force
+    said = [f"controller of {len(feedback.a)} states"]
+    if feedback.sample_time:
+        said.append(f"sampled each {feedback.sample_time * 1e6:.4g} µs")
+        if feedback.delay:
+            said.append(f"delayed by {feedback.delay * 1e6:.4g} µs")
+    if math.isfinite(limit):
+        said.append(f"limited to {limit:g} N per axis")
+    return " ".join(said)
+
+
+class Sampled:
+    """An integrator that stops where a controller measures and where its forces change."""
+
+    def __init__(self, advance: Advance, loop: Loop) -> None:
+        self.advance, self.loop = advance, loop
+        self.state = np.zeros(len(loop.feedback.a))
+        self.count = 0
+        self.waiting: deque[tuple[float, Array]] = deque()
+
+    def __call__(self, q: Array, v: Array, t: float, stop: float, times: Array) -> Answer:
+        """Integrate from t to `stop`; see `rotorsim.orbit.motion`."""
+        done, found = 0, []
+        slack = 1e-9 * self.loop.feedback.sample_time
+        while True:
+            v = self._act(t + slack, q, v)
+            end = min(stop, self._due())
+            # what lies on a sample by rounding sees the forces after it
+            upto = len(times) if end == stop else int(np.searchsorted(times, end - slack))
+            wanted = np.maximum(times[done:upto], t)
+            (qs, vs), status, message, q, v, *events = self.advance(q, v, t, end, wanted)
+            found.append((qs, vs))
+            done, t = upto, end
+            if status is not OrbitStatus.COMPLETED or end == stop:
+                qs, vs = (np.concatenate(column) for column in zip(*found, strict=True))
+                return (qs, vs), status, message, q, v, *events
+
+    def _due(self) -> float:
+        sample = self.count * self.loop.feedback.sample_time
+        return min(sample, self.waiting[0][0]) if self.waiting else sample
+
+    def _act(self, now: float, q: Array, v: Array) -> Array:
+        """Measure and set the forces, whatever is due until now."""
+        feedback, v = self.loop.feedback, v.copy()
+        while self._due() <= now:
+            sample = self.count * feedback.sample_time
+            if self.waiting and self.waiting[0][0] <= min(sample, now):
+                v[self.loop.size :] = self.waiting.popleft()[1]
+                continue
+            force, self.state = feedback.law(self.state, self.loop.measured(q, v))
+            self.waiting.append((sample + feedback.delay, force))
+            self.count += 1
+        return v
