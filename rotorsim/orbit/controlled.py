@@ -169,9 +169,10 @@ class Sampled:
     """An integrator that stops where a controller measures and where its forces change."""
 
     def __init__(self, advance: Advance, loop: Loop) -> None:
-        self.advance, self.loop = advance, loop
-        self.state = np.zeros(len(loop.feedback.a))
-        self.count = 0
+        self.advance: Advance = advance
+        self.loop: Loop = loop
+        self.state: Array = np.zeros(len(loop.feedback.a))
+        self.count: int = 0
         self.waiting: deque[tuple[float, Array]] = deque()
 
     def __call__(self, q: Array, v: Array, t: float, stop: float, times: Array) -> Answer:

@@ -30,6 +30,7 @@ from .rings import damper_force, ring_films
 if TYPE_CHECKING:
     from ..model import Case
     from ..model.machine import Damper, SupportEntry
+    from ..rotor import Rotor
     from .machine import MachineResult
 
 
@@ -44,17 +45,19 @@ class MotionParts:
     def __init__(
         self, machine: MachineFile, settings: MachineOrbit, result: MachineResult | None
     ) -> None:
-        self.machine = machine if machine.orbit is settings else replace(machine, orbit=settings)
+        self.machine: MachineFile = (
+            machine if machine.orbit is settings else replace(machine, orbit=settings)
+        )
         self.settings = settings
-        self.rotor = self.machine.rotor_with_unbalance()
-        self.nodes = [node_at(self.rotor, entry.at) for entry in machine.support]
-        self.drive = self._drive()
-        self.first = self.drive.start if isinstance(self.drive, TorqueDrive) else (
+        self.rotor: Rotor = self.machine.rotor_with_unbalance()
+        self.nodes: list[int] = [node_at(self.rotor, entry.at) for entry in machine.support]
+        self.drive: SpeedSchedule | TorqueDrive = self._drive()
+        self.first: float = self.drive.start if isinstance(self.drive, TorqueDrive) else (
             self.drive.speeds[0])  # fmt: skip
-        self.top = max(self.drive.speeds)
-        self.kinds = [self._kind(i) for i in range(len(self.nodes))]
-        self.result = self._result(result)
-        self.reactions = self._reactions()
+        self.top: float = max(self.drive.speeds)
+        self.kinds: list[MachineForce] = [self._kind(i) for i in range(len(self.nodes))]
+        self.result: MachineResult | None = self._result(result)
+        self.reactions: Array | None = self._reactions()
         self.own: list[tuple[str, str, float]] = []
         """Unknowns beside the rotor's: whose, name, mass."""
         self.links: list[Link] = []
@@ -135,8 +138,8 @@ class MotionParts:
             if self._is_linear(i):
                 mounts.append(Mount(self.nodes[i], self._linear(i), name))
         linear = Machine(self.rotor, mounts)
-        self.linear_own = linear.size - self.rotor.size
-        self.linear_names = linear.unknowns[self.rotor.size :]
+        self.linear_own: int = linear.size - self.rotor.size
+        self.linear_names: tuple[tuple[str, str], ...] = linear.unknowns[self.rotor.size :]
         for i, name in enumerate(names):
             entry = machine.support[i]
             if not self._is_linear(i):
