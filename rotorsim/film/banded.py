@@ -64,7 +64,9 @@ def factor_operator(operator: FilmOperator, active: Booleans) -> FilmFactor:
 
 
 @kernel
-def factor_cells(conductance, interior, active):
+def factor_cells(
+    conductance: Array, interior: Booleans, active: Booleans
+) -> tuple[Array, NDArray[np.int64], int]:
     """Return the factored band of the active cells, the order of its columns, 0 or a bad pivot."""
     n, m = active.shape
     order, folded = column_order(interior, active)
@@ -78,7 +80,7 @@ def factor_cells(conductance, interior, active):
 
 
 @kernel
-def solve_cells(band, order, active, right):
+def solve_cells(band: Array, order: NDArray[np.int64], active: Booleans, right: Array) -> Array:
     """Solve for (count, n, m) right-hand sides; inactive cells give 0."""
     count, n, m = right.shape
     packed = np.zeros((count, order.size * m))
@@ -97,7 +99,7 @@ def solve_cells(band, order, active, right):
 
 
 @kernel
-def column_order(interior, active):
+def column_order(interior: Booleans, active: Booleans) -> tuple[NDArray[np.int64], bool]:
     """Return the columns in band order, and whether the ring had to be folded."""
     n, m = active.shape
     used = np.zeros(n, dtype=np.bool_)

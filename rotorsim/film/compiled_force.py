@@ -188,7 +188,10 @@ def _pressed(work, interior, source, numbers, table):
 
 
 @kernel
-def film_at(x, y, vx, vy, speed, numbers, table, slopes):
+def film_at(
+    x: float, y: float, vx: float, vy: float, speed: float, numbers: Array, table: Array,
+    slopes: Array,
+) -> tuple[float, float]:  # fmt: skip
     """Return the film's force on the journal [N]; NaN where it cannot be solved.
 
     x, y, vx, vy : Position [m] and velocity [m/s]; speed : Of the journal's surface over its radius

@@ -14,6 +14,7 @@ from llvmlite import binding
 from numba import types
 from numba.extending import get_cython_function_address
 
+from ..arrays import Array
 from .kernels import kernel
 
 
@@ -30,7 +31,7 @@ _LOWER = ord("L")
 
 
 @kernel
-def factor_band(band):
+def factor_band(band: Array) -> int:
     """Factor a symmetric band (size, width + 1) in place; 0 where it is positive definite.
 
     Row k holds column k of the matrix from its diagonal down.
@@ -45,7 +46,7 @@ def factor_band(band):
 
 
 @kernel
-def solve_band(band, right):
+def solve_band(band: Array, right: Array) -> None:
     """Solve for right-hand sides (count, size) in place with the factor of `factor_band`."""
     count, size = right.shape
     stored = band.shape[1]

@@ -267,9 +267,10 @@ def neighbour(face: int, i: int, j: int, n: int, m: int) -> tuple[int, int]:
 
 @kernel
 def assemble(
-    sides, f2, f2_axial, g, interior, spacing, dx, dy, surface_speed, conductance, thickness,
-    couette,
-):  # fmt: skip
+    sides: Array, f2: Array, f2_axial: Array, g: Array, interior: Booleans, spacing: Array,
+    dx: Array, dy: Array, surface_speed: float, conductance: Array, thickness: Array,
+    couette: Array,
+) -> bool:  # fmt: skip
     """Fill conductance, thickness and Couette flow of the faces; return whether the film steps.
 
     At a step the flow through both half cells is the same (see `StepFaces`), and the thickness of

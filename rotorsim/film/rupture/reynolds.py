@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array, Booleans
+from ...arrays import Array, Booleans, Indices
 from ...threads import one_blas_thread
 from ..banded import (
     FilmFactor,
@@ -141,7 +141,14 @@ def _active_set(
 
 
 @kernel
-def active_set(conductance, interior, source, allowed, start, patience=_MAX_ACTIVE_SET_STEPS):
+def active_set(
+    conductance: Array,
+    interior: Booleans,
+    source: Array,
+    allowed: Booleans,
+    start: Booleans,
+    patience: int = _MAX_ACTIVE_SET_STEPS,
+) -> tuple[Array, Booleans, Array, Indices, int, int]:
     """Find the cells that are full: p >= 0 there, and oil is drawn away from all others.
 
     start : Cells tried first; patience : Linear solves.
