@@ -11,13 +11,18 @@ import hashlib
 import pickle
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any, TypeVar
 
 import numba
 import numpy as np
+from llvmlite import ir
+from numba import types
 from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
+from numba.core.ccallback import CFunc
+from numba.extending import intrinsic
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _PLAIN = (bool, int, float, complex, str, bytes, type(None), np.generic)
@@ -46,6 +51,46 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
     return decorate
 
 
+def address_of(function: Callable[..., Any], **options: Any) -> int:
+    """Return the address of a compiled function of four pointers to floats, for `call_address`.
+
+    Whoever calls a function by its address is compiled without it: of a large one with many callers
+    that saves a minute. An address is good in one process only.
+
+    options : Those of `numba.njit` but ``cache``.
+    """
+    if function not in _called:
+        signature = (types.CPointer(types.float64),) * 4, types.void
+        callback: Any = CFunc(function, signature, {}, options)
+        with suppress(RuntimeError):
+            callback._cache = _SourceCache(function)
+        callback.compile()
+        _called[function] = callback
+    return _called[function].address
+
+
+_called: dict[Callable[..., Any], Any] = {}
+
+
+def _call_address(
+    _context: Any, address: Any, first: Any, second: Any, third: Any, fourth: Any
+) -> Any:
+    """Call the function of `address_of` with pointers (``array.ctypes``) to its arguments."""
+    del address, first, second, third, fourth
+    signature = types.void(types.intp, *[types.voidptr] * 4)
+
+    def generate(context: Any, builder: Any, _signature: Any, arguments: Any) -> Any:
+        pointer = ir.IntType(8).as_pointer()
+        kind = ir.FunctionType(ir.VoidType(), [pointer] * 4)
+        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
+call_address: Any = intrinsic(_call_address)
+
+
 class _CheckedFile(IndexDataCacheFile):
     """Numba's files with a checksum after the pickled data, which unpickling does not look at."""
 
@@ -64,7 +109,7 @@ class _SourceCache(FunctionCache):
     """Numba's cache, valid for `_fingerprint` of a function; no fault of a disk is passed on."""
 
     def __init__(self, dispatcher: Any) -> None:
-        super().__init__(dispatcher.py_func)
+        super().__init__(getattr(dispatcher, "py_func", dispatcher))
         self._dispatcher = dispatcher
         self._cache_file = _CheckedFile(
             cache_path=self._cache_path, filename_base=self._impl.filename_base, source_stamp=None

@@ -72,7 +72,9 @@ def factor_cells(
     order, folded = column_order(interior, active)
     width = (2 * m if folded else m) if order.size > 1 else m - 1
     band = np.zeros((order.size * m, min(width, order.size * m - 1) + 1))
-    position = np.full(n, -1)
+    position = np.empty(n, dtype=np.int64)
+    for i in range(n):
+        position[i] = -1
     for c in range(order.size):
         position[order[c]] = c
     _fill_band(conductance, interior, active, order, position, band)

@@ -14,10 +14,12 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numba.np.numpy_support import carray
 
 from ..arrays import Array
+from ..compiled import address_of, call_address
 from .banded import factor_cells, solve_cells
-from .kernels import kernel
+from .kernels import KERNEL, kernel
 from .layers import LayerIntegrals
 from .operator import assemble
 from .problem import FilmProblem
@@ -30,7 +32,7 @@ _DIFFERENCE = 1e-6
 """Of a displacement over the clearance, for the derivative of the cells' continuity."""
 _SHAPES, _INTERIOR, _PRESSURE, _SPACING = 5, 15, 19, 23
 _FIXED, _AREA, _FULL, _FIELDS = 27, 28, 29, 30
-_HEAD = 10
+_HEAD = 11
 """Numbers ahead of the speeds of the viscosity fields."""
 
 
@@ -62,7 +64,7 @@ def packed_film(
     head = [
         condition, math.cos(frame), math.sin(frame), least, *rest[:2],
         problem.bearing.journal_radius, geometry.multiplicity, problem.bearing.radial_clearance,
-        len(fields),
+        len(fields), address_of(_film_at, **KERNEL),
     ]  # fmt: skip
     speeds = [speed for speed, _ in fields]
     numbers = np.concatenate([head, speeds, topology.dx, topology.dy])
@@ -188,62 +190,6 @@ def _pressed(work, interior, source, numbers, table):
 
 
 @kernel
-def film_at(
-    x: float, y: float, vx: float, vy: float, speed: float, numbers: Array, table: Array,
-    slopes: Array,
-) -> tuple[float, float]:  # fmt: skip
-    """Return the film's force on the journal [N]; NaN where it cannot be solved.
-
-    x, y, vx, vy : Position [m] and velocity [m/s]; speed : Of the journal's surface over its radius
-        [rad/s].
-    numbers, table : See `packed_film`; the table's plane of full cells is written.
-    slopes : (2, 2, 2) array: filled with K [N/m] and C [N s/m] there; (0, 2, 2): not asked for.
-    """
-    _, n, m = table.shape
-    cos, sin = numbers[1], numbers[2]
-    x, y = cos * x + sin * y, cos * y - sin * x
-    vx, vy = cos * vx + sin * vy, cos * vy - sin * vx
-    h, fields = np.empty((5, n, m)), np.empty((3, n, m))
-    x, y = _pulled_back(x, y, numbers, table, h)
-    _layers_at(speed, numbers, table, fields)
-    interior = np.empty((4, n, m), dtype=np.bool_)
-    squeeze = np.empty((n, m))
-    for i in range(n):
-        for j in range(m):
-            squeeze[i, j] = vx * table[_SHAPES, i, j] + vy * table[_SHAPES + 5, i, j]
-            for face in range(4):
-                interior[face, i, j] = table[_INTERIOR + face, i, j] != 0.0
-    work, source = np.empty((10, n, m)), np.empty((n, m))
-    surface = speed * numbers[6]
-    _continuity(h, fields, interior, numbers, table, surface, squeeze, work, source)
-    pressure, full, band, order, _, pivot = _pressed(work, interior, source, numbers, table)
-    if pivot != 0:
-        table[_FULL] = 1.0 - table[_FIXED]
-        return np.nan, np.nan
-    fx, fy, carrying = 0.0, 0.0, full.copy()
-    for i in range(n):
-        for j in range(m):
-            table[_FULL, i, j] = 1.0 if full[i, j] else 0.0
-            p = pressure[i, j]
-            if numbers[0] == HALF_SOMMERFELD and p < 0.0:
-                carrying[i, j] = False
-                p = 0.0
-            if table[_FIXED, i, j] != 0.0:
-                p = table[_PRESSURE, i, j]
-                pressure[i, j] = p
-            load = p * table[_AREA, i, j]
-            fx += load * table[_SHAPES, i, j]
-            fy += load * table[_SHAPES + 5, i, j]
-    share = numbers[7]
-    if slopes.shape[0] > 0:
-        _slopes(
-            x, y, numbers, table, fields, interior, surface, squeeze, pressure, full, carrying,
-            band, order, slopes,
-        )  # fmt: skip
-    return share * (cos * fx - sin * fy), share * (sin * fx + cos * fy)
-
-
-@kernel
 def _slopes(
     x, y, numbers, table, fields, interior, surface, squeeze, pressure, full, carrying, band, order,
     slopes,
@@ -283,3 +229,79 @@ def _slopes(
         e, f, g, w = cos * a - sin * c, cos * b - sin * d, sin * a + cos * c, sin * b + cos * d
         slopes[k, 0, 0], slopes[k, 0, 1] = cos * e - sin * f, sin * e + cos * f
         slopes[k, 1, 0], slopes[k, 1, 1] = cos * g - sin * w, sin * g + cos * w
+
+
+@kernel
+def film_at(
+    x: float, y: float, vx: float, vy: float, speed: float, numbers: Array, table: Array,
+    slopes: Array,
+) -> tuple[float, float]:  # fmt: skip
+    """Return the film's force on the journal [N]; NaN where it cannot be solved.
+
+    x, y, vx, vy : Position [m] and velocity [m/s]; speed : Of the journal's surface over its radius
+        [rad/s].
+    numbers, table : See `packed_film`; the table's plane of full cells is written.
+    slopes : (2, 2, 2) array: filled with K [N/m] and C [N s/m] there; (0, 2, 2): not asked for.
+    """
+    planes, n, m = table.shape
+    wanted = slopes.shape[0]
+    asked = np.array([x, y, vx, vy, speed, numbers.size, planes, n, m, wanted])
+    found = np.empty(10)
+    call_address(int(numbers[10]), asked.ctypes, numbers.ctypes, table.ctypes, found.ctypes)
+    for k in range(wanted):
+        for i in range(2):
+            for j in range(2):
+                slopes[k, i, j] = found[2 + 4 * k + 2 * i + j]
+    return found[0], found[1]
+
+
+def _film_at(asked, numbers, table, found):  # pragma: no cover - compiled
+    """Solve the film; the arguments of `film_at` and its results, behind pointers."""
+    asked, found = carray(asked, 10), carray(found, 10)
+    x, y, vx, vy, speed = asked[0], asked[1], asked[2], asked[3], asked[4]
+    n, m = int(asked[7]), int(asked[8])
+    numbers = carray(numbers, int(asked[5]))
+    table = carray(table, (int(asked[6]), n, m))
+    slopes = found[2:].reshape(2, 2, 2)
+    cos, sin = numbers[1], numbers[2]
+    x, y = cos * x + sin * y, cos * y - sin * x
+    vx, vy = cos * vx + sin * vy, cos * vy - sin * vx
+    h, fields = np.empty((5, n, m)), np.empty((3, n, m))
+    x, y = _pulled_back(x, y, numbers, table, h)
+    _layers_at(speed, numbers, table, fields)
+    interior = np.empty((4, n, m), dtype=np.bool_)
+    squeeze = np.empty((n, m))
+    for i in range(n):
+        for j in range(m):
+            squeeze[i, j] = vx * table[_SHAPES, i, j] + vy * table[_SHAPES + 5, i, j]
+            for face in range(4):
+                interior[face, i, j] = table[_INTERIOR + face, i, j] != 0.0
+    work, source = np.empty((10, n, m)), np.empty((n, m))
+    surface = speed * numbers[6]
+    _continuity(h, fields, interior, numbers, table, surface, squeeze, work, source)
+    pressure, full, band, order, _, pivot = _pressed(work, interior, source, numbers, table)
+    if pivot != 0:
+        table[_FULL] = 1.0 - table[_FIXED]
+        found[:] = np.nan
+        return
+    fx, fy, carrying = 0.0, 0.0, full.copy()
+    for i in range(n):
+        for j in range(m):
+            table[_FULL, i, j] = 1.0 if full[i, j] else 0.0
+            p = pressure[i, j]
+            if numbers[0] == HALF_SOMMERFELD and p < 0.0:
+                carrying[i, j] = False
+                p = 0.0
+            if table[_FIXED, i, j] != 0.0:
+                p = table[_PRESSURE, i, j]
+                pressure[i, j] = p
+            load = p * table[_AREA, i, j]
+            fx += load * table[_SHAPES, i, j]
+            fy += load * table[_SHAPES + 5, i, j]
+    share = numbers[7]
+    if asked[9] > 0.0:
+        _slopes(
+            x, y, numbers, table, fields, interior, surface, squeeze, pressure, full, carrying,
+            band, order, slopes,
+        )  # fmt: skip
+    found[0], found[1] = share * (cos * fx - sin * fy), share * (sin * fx + cos * fy)

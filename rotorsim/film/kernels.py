@@ -7,6 +7,8 @@ from typing import Any, TypeVar
 
 from ..compiled import compiled
 
+KERNEL: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "reassoc"}}
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -16,4 +18,4 @@ def kernel(function: Function) -> Function:
     Division follows numpy (no exception); sums may be reordered and fused, nothing else is relaxed,
     so that NaN and infinities still behave.
     """
-    return compiled(error_model="numpy", fastmath={"contract", "reassoc"}, nogil=True)(function)
+    return compiled(**KERNEL, nogil=True)(function)

@@ -37,7 +37,8 @@ def factor_band(band: Array) -> int:
     Row k holds column k of the matrix from its diagonal down.
     """
     size, stored = band.shape
-    numbers = np.array([_LOWER, size, stored - 1, stored, 0], dtype=np.int32)
+    numbers = np.empty(5, dtype=np.int32)
+    numbers[0], numbers[1], numbers[2], numbers[3] = _LOWER, size, stored - 1, stored
     _dpbtrf(
         numbers.ctypes, numbers[1:].ctypes, numbers[2:].ctypes, band.ctypes, numbers[3:].ctypes,
         numbers[4:].ctypes,
@@ -50,7 +51,9 @@ def solve_band(band: Array, right: Array) -> None:
     """Solve for right-hand sides (count, size) in place with the factor of `factor_band`."""
     count, size = right.shape
     stored = band.shape[1]
-    numbers = np.array([_LOWER, size, stored - 1, count, stored, 0], dtype=np.int32)
+    numbers = np.empty(6, dtype=np.int32)
+    numbers[0], numbers[1], numbers[2] = _LOWER, size, stored - 1
+    numbers[3], numbers[4] = count, stored
     _dpbtrs(
         numbers.ctypes, numbers[1:].ctypes, numbers[2:].ctypes, numbers[3:].ctypes, band.ctypes,
         numbers[4:].ctypes, right.ctypes, numbers[1:].ctypes, numbers[5:].ctypes,

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -109,6 +109,10 @@ class MotionProblem:
     forcing: tuple[float, ...] = ()
     contact: Callable[[Array], Array] | None = None
     loop: Loop | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # `plain` may hold addresses of compiled functions, which are good in this process only.
+        return {name: value for name, value in self.__dict__.items() if name != "plain"}
 
     def film_left(self, q: Array) -> Array:
         """Return the film (m,) that is left at displacements (m, n) before the run ends [m]."""

@@ -529,10 +529,19 @@ def _slopes(k: int, q: Array, v: Array, w: float, scale: Array, p: Plain) -> Arr
     slopes = np.zeros((3, 5))
     if link[0] == SOLVED and link[5] < 0:
         numbers, table = _form(k, p)
-        film, turn = np.zeros((2, 2, 2)), np.array([[f[8], -f[9]], [f[9], f[8]]])
-        here, rate = turn.T @ place[:2], turn.T @ place[2:4]
-        film_at(here[0], here[1], rate[0], rate[1], f[0] * w, numbers, table, film)
-        slopes[:2, :2], slopes[:2, 2:4] = turn @ film[0] @ turn.T, turn @ film[1] @ turn.T
+        film, cos, sin = np.empty((2, 2, 2)), f[8], f[9]
+        x, y, vx, vy = place[0], place[1], place[2], place[3]
+        film_at(
+            cos * x + sin * y, cos * y - sin * x, cos * vx + sin * vy, cos * vy - sin * vx,
+            f[0] * w, numbers, table, film,
+        )  # fmt: skip
+        for j in range(2):
+            xx, xy, yx, yy = film[j, 0, 0], film[j, 0, 1], film[j, 1, 0], film[j, 1, 1]
+            # turned on both sides
+            slopes[0, 2 * j] = cos * (cos * xx - sin * xy) - sin * (cos * yx - sin * yy)
+            slopes[0, 2 * j + 1] = cos * (sin * xx + cos * xy) - sin * (sin * yx + cos * yy)
+            slopes[1, 2 * j] = sin * (cos * xx - sin * xy) + cos * (cos * yx - sin * yy)
+            slopes[1, 2 * j + 1] = sin * (sin * xx + cos * xy) + cos * (sin * yx + cos * yy)
         return slopes
     moved = np.empty(5)
     length = 1e-6 * max(scale[link[1]], abs(place[0]), abs(place[1]))
@@ -571,8 +580,10 @@ def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[A
                 damping[p.block[i], p.block[j]] += row[(m + i) * m + j]
     for k in range(p.limit_offset.size):
         if abs(limited_force(k, q, v, p)) < p.limit:
-            stiffness -= np.outer(p.limit_columns[:, k], p.limit_rows[k, : q.size])
-            damping -= np.outer(p.limit_columns[:, k], p.limit_rows[k, q.size :])
+            for i in range(q.size):
+                for j in range(q.size):
+                    stiffness[i, j] -= p.limit_columns[i, k] * p.limit_rows[k, j]
+                    damping[i, j] -= p.limit_columns[i, k] * p.limit_rows[k, q.size + j]
     for k in range(p.links.shape[0]):
         link, slopes = p.links[k], _slopes(k, q, v, w, scale, p)
         for j in range(5):

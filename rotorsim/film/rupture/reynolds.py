@@ -155,26 +155,42 @@ def active_set(
     Returns pressure and full cells, their factored band and its order, the linear solves, and 0;
     the bad pivot of a film without a solution; -1 where the cells did not settle.
     """
-    tolerance = 1e-13 * np.abs(source).max()
-    full = start.copy() if start.any() else allowed & (source > 0.0)
-    pressure, update = np.zeros_like(source), np.empty_like(full)
-    band, order, steps = np.empty((0, 1)), np.empty(0, dtype=np.int64), 0
-    right = source.reshape(1, *source.shape)
-    while steps < patience:
-        if not full.any():
-            pressure[:] = 0.0
-            return pressure, full, band, order, steps, 0
+    n, m = source.shape
+    full, update = np.empty((n, m), dtype=np.bool_), np.empty((n, m), dtype=np.bool_)
+    pressure, right = np.zeros((n, m)), np.empty((1, n, m))
+    scale, count, steps = 0.0, 0, 0
+    for i in range(n):
+        for j in range(m):
+            scale = max(scale, abs(source[i, j]))
+            right[0, i, j], full[i, j] = source[i, j], start[i, j]
+            count += start[i, j]
+    if count == 0:
+        for i in range(n):
+            for j in range(m):
+                full[i, j] = allowed[i, j] and source[i, j] > 0.0
+                count += full[i, j]
+    band, order = np.empty((0, 1)), np.empty(0, dtype=np.int64)
+    while count > 0 and steps < patience:
         band, order, pivot = factor_cells(conductance, interior, full)
         if pivot != 0:
             return pressure, full, band, order, steps, pivot
         pressure = solve_cells(band, order, full, right)[0]
         steps += 1
         changed = _update_set(
-            conductance, interior, source, pressure, full, allowed, tolerance, update
+            conductance, interior, source, pressure, full, allowed, 1e-13 * scale, update
         )
         if changed == 0:
             return pressure, full, band, order, steps, 0
-        full[:] = update
+        count = 0
+        for i in range(n):
+            for j in range(m):
+                full[i, j] = update[i, j]
+                count += update[i, j]
+    if count == 0:
+        for i in range(n):
+            for j in range(m):
+                pressure[i, j] = 0.0
+        return pressure, full, band, order, steps, 0
     return pressure, full, band, order, steps, -1
 
 
