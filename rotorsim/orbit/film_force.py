@@ -153,6 +153,11 @@ class SolvedFilmForce:
             others=tuple(sorted(fields, key=lambda field: field[0])) if others else (),
         )
 
+    def turned(self, angle: float) -> SolvedFilmForce:
+        """Return the force in a frame from whose x axis the present one's lies at `angle` [rad]."""
+        bearing = self.bearing.turned(angle)
+        return replace(self, frame=self.frame + angle, bearing=bearing)
+
     def _layers(self, speed: float) -> LayerIntegrals:
         """Return viscosity field at a speed: linear between the known ones, held beyond them."""
         if not self.others:

@@ -236,16 +236,6 @@ def film_force(
 
 
 @compiled()
-def film_force_series(kind: int, motion: Array, numbers: Array, table: Array) -> Array:
-    """Return the film force (n, 2) [N] along motion (n, 5): x, y, vx, vy, speed."""
-    out = np.empty((motion.shape[0], 2))
-    for i in range(motion.shape[0]):
-        m = motion[i]
-        out[i] = film_force(kind, m[0], m[1], m[2], m[3], m[4], numbers, table)
-    return out
-
-
-@compiled()
 def shaft(t: float, knots: Array) -> tuple[float, float, float]:
     """Return angle, speed and acceleration of the shaft.
 

@@ -220,7 +220,7 @@ class Motion:
 
     def link_force(self, link: Link) -> Array:
         """Return the force (m, 2) of a link on its inner body [N]."""
-        return self.problem.system.link_forces(link, self.q, self.v, self.speed)
+        return self.problem.system.link_forces(link, self.q, self.v, self.speed, self.problem.plain)
 
     @property
     def actuator_force(self) -> Array:

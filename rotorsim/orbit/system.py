@@ -25,9 +25,8 @@ from ..arrays import Array, ComplexArray, Indices
 from ..compiled import compiled
 from ..errors import InputError
 from ..film.compiled_force import film_at
-from ..film.geometry import rotation
 from .forces import BearingForce, CompilableForce
-from .kernels import SOLVED, STOP, film_force, film_force_series
+from .kernels import SOLVED, STOP, film_force
 
 _SPEED_INTERVALS = 256
 GROUND = (-1, -1)
@@ -62,7 +61,6 @@ class Link:
     offset : (float, float). Of the housing's centre [m].
     minimum_film : At which the run ends [m].
     film : False for a stop.
-    angle : From x to the x axis of a film that is solved [rad].
     pads : Unknowns that are the displacements of its pads.
     """
 
@@ -77,7 +75,6 @@ class Link:
     offset: tuple[float, float] = (0.0, 0.0)
     minimum_film: float = 0.0
     film: bool = True
-    angle: float = 0.0
     pads: tuple[int, ...] = ()
 
     @cached_property
@@ -225,9 +222,8 @@ class MotionSystem:
             )  # fmt: skip
             clearance = link.force.radial_clearance if link.film else math.inf
             floats.append(
-                [*link.turning, link.side, link.drag, *link.offset, clearance, link.minimum_film,
-                 math.cos(link.angle), math.sin(link.angle)]
-            )  # fmt: skip
+                [*link.turning, link.side, link.drag, *link.offset, clearance, link.minimum_film]
+            )
         index, table, low, step = np.zeros(0, dtype=np.int64), np.zeros((1, 4, 0)), lowest, 1.0
         if self.block is not None:
             index = self.block.unknowns.astype(np.int64)
@@ -270,7 +266,7 @@ class MotionSystem:
             load_real=np.array([h.amplitude.real for h in loads]) if loads else empty,
             load_imag=np.array([h.amplitude.imag for h in loads]) if loads else empty,
             links=np.array(ints, dtype=np.int64).reshape(-1, 12),
-            link_numbers=np.array(floats, dtype=float).reshape(-1, 10),
+            link_numbers=np.array(floats, dtype=float).reshape(-1, 8),
             numbers=np.concatenate(numbers), tables=np.concatenate(tables), block=index,
             block_table=table, block_low=low, block_step=step,
             limit_rows=_array(limited.rows), limit_offset=_array(limited.offset),
@@ -299,18 +295,14 @@ class MotionSystem:
                 found += [spread @ part @ spread.T for part in (stiffness, damping)]
         return found[0], found[1]
 
-    def link_forces(self, link: Link, q: Array, v: Array, speed: Array) -> Array:
+    def link_forces(self, link: Link, q: Array, v: Array, speed: Array, plain: Plain) -> Array:
         """Return the force (m, 2) of a link on its inner body along (m, n) motion [N]."""
-        if not speed.size:
-            return np.zeros((0, 2))
-        if isinstance(link.force, CompilableForce):
-            turn = rotation(link.angle)
-            rows = link.motion(q, v, speed)
-            rows[:, :2], rows[:, 2:4] = rows[:, :2] @ turn, rows[:, 2:4] @ turn
-            form = link.force.compiled(float(rows[:, 4].min()), float(rows[:, 4].max()))
-            return film_force_series(form.kind, rows, form.numbers, form.table) @ turn.T
+        if link.compilable:
+            k = [one for one in self.links if one.compilable].index(link)
+            return _link_forces(k, _array(q), _array(v), _array(speed), plain)
         rows = zip(q, v, speed, strict=True)
-        return np.array([self._pull(link, a, b, float(w))[0][:2] for a, b, w in rows])
+        pulls = [self._pull(link, a, b, float(w))[0][:2] for a, b, w in rows]
+        return np.array(pulls).reshape(-1, 2)
 
     def _pull(
         self, link: Link, q: Array, v: Array, speed: float, slopes: bool = False
@@ -325,13 +317,8 @@ class MotionSystem:
         solved = link.generalised
         if solved is None:
             return self._differences(link.force, here, rate, float(turning), slopes)
-        turn = np.eye(here.size)
-        turn[:2, :2] = rotation(link.angle)
-        motion = turn.T @ here, turn.T @ rate, float(turning)
-        if not slopes:
-            return (turn @ solved.forces(*motion),)
-        force, stiffness, damping = solved.linear(*motion)
-        return turn @ force, turn @ stiffness @ turn.T, turn @ damping @ turn.T
+        motion = here, rate, float(turning)
+        return solved.linear(*motion) if slopes else (solved.forces(*motion),)
 
     @staticmethod
     def _differences(
@@ -432,12 +419,7 @@ def link_force(
     """Return the force (x, y) of link k on its inner body, and its torque on the ring."""
     links, f = p.links[k], p.link_numbers[k]
     numbers, table = _form(k, p)
-    c, s = f[8], f[9]
-    along, across = film_force(
-        links[0], c * x + s * y, c * y - s * x, c * vx + s * vy, c * vy - s * vx,
-        f[0] * w + f[1] * ring, numbers, table,
-    )  # fmt: skip
-    fx, fy = c * along - s * across, s * along + c * across
+    fx, fy = film_force(links[0], x, y, vx, vy, f[0] * w + f[1] * ring, numbers, table)
     torque = 0.0
     if links[5] >= 0:
         eps2 = min((x * x + y * y) / (f[6] * f[6]), 1.0 - 1e-9)
@@ -445,6 +427,16 @@ def link_force(
         # the two surfaces share the couple of the eccentric force
         torque = f[2] * shear - 0.5 * (x * fy - y * fx)
     return fx, fy, torque
+
+
+@compiled()
+def _link_forces(k: int, q: Array, v: Array, speed: Array, p: Plain) -> Array:
+    """Return the force (m, 2) of link k on its inner body along (m, n) motion [N]."""
+    out = np.empty((speed.size, 2))
+    for i in range(speed.size):
+        x, y, vx, vy, ring = link_place(k, q[i], v[i], p)
+        out[i, 0], out[i, 1], _ = link_force(k, x, y, vx, vy, ring, speed[i], p)
+    return out
 
 
 @compiled()
@@ -529,19 +521,11 @@ def _slopes(k: int, q: Array, v: Array, w: float, scale: Array, p: Plain) -> Arr
     slopes = np.zeros((3, 5))
     if link[0] == SOLVED and link[5] < 0:
         numbers, table = _form(k, p)
-        film, cos, sin = np.empty((2, 2, 2)), f[8], f[9]
-        x, y, vx, vy = place[0], place[1], place[2], place[3]
-        film_at(
-            cos * x + sin * y, cos * y - sin * x, cos * vx + sin * vy, cos * vy - sin * vx,
-            f[0] * w, numbers, table, film,
-        )  # fmt: skip
-        for j in range(2):
-            xx, xy, yx, yy = film[j, 0, 0], film[j, 0, 1], film[j, 1, 0], film[j, 1, 1]
-            # turned on both sides
-            slopes[0, 2 * j] = cos * (cos * xx - sin * xy) - sin * (cos * yx - sin * yy)
-            slopes[0, 2 * j + 1] = cos * (sin * xx + cos * xy) - sin * (sin * yx + cos * yy)
-            slopes[1, 2 * j] = sin * (cos * xx - sin * xy) + cos * (cos * yx - sin * yy)
-            slopes[1, 2 * j + 1] = sin * (sin * xx + cos * xy) + cos * (sin * yx + cos * yy)
+        film = np.empty((2, 2, 2))
+        film_at(place[0], place[1], place[2], place[3], f[0] * w, numbers, table, film)
+        for i in range(2):
+            for j in range(4):
+                slopes[i, j] = film[j // 2, i, j % 2]
         return slopes
     moved = np.empty(5)
     length = 1e-6 * max(scale[link[1]], abs(place[0]), abs(place[1]))

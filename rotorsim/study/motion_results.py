@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..film.geometry import pad_unknowns, rotation
+from ..film.geometry import pad_unknowns
 from ..model import Bearing
 from ..orbit.analysis import recognise
 from ..orbit.description import describe_orbit
@@ -105,20 +105,18 @@ def _film_frames(motion: Motion, link: Link, name: str) -> list[FilmFrame]:
             theta, along, pressure = solved
             radius = force.radius
         elif isinstance(force, SolvedFilmForce):
-            turn = np.eye(2 + len(link.pads))
-            turn[:2, :2] = rotation(link.angle)
-            own = turn.T @ np.array([x, y, *motion.q[row, list(link.pads)]])
-            rate = turn.T @ np.array([vx, vy, *motion.v[row, list(link.pads)]])
+            own = np.array([x, y, *motion.q[row, list(link.pads)]])
+            rate = np.array([vx, vy, *motion.v[row, list(link.pads)]])
             try:
                 state = force.film(own, rate, float(speed))
             except ArithmeticError:
                 continue
             mesh = state.problem.mesh
-            theta = mesh.theta + force.frame + link.angle
+            theta = mesh.theta + force.frame
             along, pressure = mesh.whole_y, mesh.whole(state.solution.pressure)
             radius = force.bearing.journal_radius
             if force.pads:
-                stand = _pads_of(force.bearing.turned(link.angle), own)
+                stand = _pads_of(force.bearing, own)
         else:
             return []
         frames.append(

@@ -145,7 +145,7 @@ def _hung(parts: MotionParts, system: MotionSystem, guess: Array) -> None:
         if name not in names or not link.film or link.turning == (0.0, 0.0):
             continue
         if isinstance(link.force, SolvedFilmForce):
-            rest, turn = link.force.rest, rotation(link.angle + link.force.frame)
+            rest, turn = link.force.rest, rotation(link.force.frame)
             guess[list(link.inner)] = turn @ rest[:2] + np.array(link.offset)
             guess[list(link.pads)] = rest[2:]
             continue

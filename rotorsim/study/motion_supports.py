@@ -194,13 +194,13 @@ class MotionParts:
                 ([*journal, *housing], relative.T @ k @ relative, relative.T @ c @ relative)
             )
             return
-        force, angle = self._film(i, self.kinds[i])
+        force = self._film(i, self.kinds[i])
         pads: tuple[int, ...] = ()
         if isinstance(force, SolvedFilmForce) and force.pads:
             pads = tuple(self._body(name, dict.fromkeys(force.pads, 0.0)))
             self.inertias.append((list(pads), force.pad_mass))
         self.links.append(
-            Link(name, force, journal, housing, offset=offset, angle=angle, pads=pads,
+            Link(name, force, journal, housing, offset=offset, pads=pads,
                  minimum_film=self.machine.bearings[name].bearing.roughness)
         )  # fmt: skip
 
@@ -253,8 +253,8 @@ class MotionParts:
         scenario = self.machine.bearings[self.machine.support_names[i]]
         return scenario.case(thermal_model=self._model([str(m) for m in scenario.thermal_models]))
 
-    def _film(self, i: int, kind: MachineForce) -> tuple[BearingForce, float]:
-        """Return nonlinear force of a bearing's film, and the angle of its frame."""
+    def _film(self, i: int, kind: MachineForce) -> BearingForce:
+        """Return the nonlinear force of a bearing's film, in the machine's frame."""
         case, key = self._plain_case(i), f"support[{i}].force"
         bearing = case.bearing
         if kind is MachineForce.SHORT:
@@ -264,12 +264,11 @@ class MotionParts:
                     key=key, value=kind.value,
                 )  # fmt: skip
             viscosity = float(case.lubricant.viscosity(case.thermal.supply_temperature))
-            force = ShortBearingForce(
+            return ShortBearingForce(
                 viscosity, bearing.length, bearing.journal_radius, bearing.radial_clearance
             )
-            return force, 0.0
         if can_be_mapped(case):
-            return loaded_film(replace(case, target=LoadTarget(1.0)), self.top).force, 0.0
+            return loaded_film(replace(case, target=LoadTarget(1.0)), self.top).force
         if kind is MachineForce.MAPPED:
             raise InputError(
                 "no map holds this film (a map is exact for plain, aligned, isothermal films that "
@@ -286,7 +285,8 @@ class MotionParts:
         )
         speeds = self.drive.speeds
         made = loaded_film(under, max(speeds), other_speeds=field_speeds(speeds))
-        return made.force, direction
+        assert isinstance(made.force, SolvedFilmForce)  # no map holds it
+        return made.force.turned(direction)
 
 
 def _polar_inertia(machine: MachineFile) -> float:
