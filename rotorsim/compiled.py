@@ -11,7 +11,6 @@ import hashlib
 import pickle
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any, TypeVar
@@ -41,11 +40,7 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
 
     def decorate(function: Function) -> Function:
         dispatcher: Any = numba.njit(**options)(function)
-        try:
-            dispatcher._cache = _SourceCache(dispatcher)
-        except RuntimeError:  # Numba's word for "no folder"
-            dispatcher._cache = NullCache()
-            _tell_once()
+        dispatcher._cache = _cache_of(dispatcher)
         return dispatcher
 
     return decorate
@@ -62,8 +57,7 @@ def address_of(function: Callable[..., Any], **options: Any) -> int:
     if function not in _called:
         signature = (types.CPointer(types.float64),) * 4, types.void
         callback: Any = CFunc(function, signature, {}, options)
-        with suppress(RuntimeError):
-            callback._cache = _SourceCache(function)
+        callback._cache = _cache_of(function)
         callback.compile()
         _called[function] = callback
     return _called[function].address
@@ -134,6 +128,14 @@ class _SourceCache(FunctionCache):
     def _stamp(self) -> None:
         # Late: a function may be decorated before those that it calls.
         self._cache_file._source_stamp = _fingerprint(self._dispatcher)
+
+
+def _cache_of(function: Any) -> Any:
+    try:
+        return _SourceCache(function)
+    except RuntimeError:  # Numba's word for "no folder"
+        _tell_once()
+        return NullCache()
 
 
 def _tell_once() -> None:

@@ -32,8 +32,10 @@ _DIFFERENCE = 1e-6
 """Of a displacement over the clearance, for the derivative of the cells' continuity."""
 _SHAPES, _INTERIOR, _PRESSURE, _SPACING = 5, 15, 19, 23
 _FIXED, _AREA, _FULL, _FIELDS = 27, 28, 29, 30
-_HEAD = 11
-"""Numbers ahead of the speeds of the viscosity fields."""
+"""Planes of a film's table; three to each viscosity field, from the last on."""
+_CONDITION, _COS, _SIN, _LEAST, _REST_X, _REST_Y, _RADIUS, _SHARE = 0, 1, 2, 3, 4, 5, 6, 7
+_CLEARANCE, _COUNT, _ADDRESS, _HEAD = 8, 9, 10, 11
+"""Places of a film's numbers; from the last on the speeds of the viscosity fields."""
 
 
 def packed_film(
@@ -90,10 +92,10 @@ def _thickness(x, y, table, h):
 @kernel
 def _pulled_back(x, y, numbers, table, h):
     """Return the position nearer to that at rest at which the walls keep apart."""
-    least = numbers[3]
+    least = numbers[_LEAST]
     if _thickness(x, y, table, h) >= least:
         return x, y
-    x0, y0 = numbers[4], numbers[5]
+    x0, y0 = numbers[_REST_X], numbers[_REST_Y]
     rest = np.empty_like(h)
     _thickness(x0, y0, table, rest)
     share = 1.0
@@ -112,7 +114,7 @@ def _pulled_back(x, y, numbers, table, h):
 @kernel
 def _layers_at(speed, numbers, table, fields):
     """Fill `fields` with F_2 around and along and G at a speed, linear between the known ones."""
-    count = int(numbers[9])
+    count = int(numbers[_COUNT])
     k, share = 0, 0.0
     if count > 1:
         while k < count - 2 and speed > numbers[_HEAD + k + 1]:
@@ -131,7 +133,7 @@ def _layers_at(speed, numbers, table, fields):
 def _continuity(h, fields, interior, numbers, table, surface, squeeze, work, source):
     """Assemble the faces into `work` and what flows into each cell at zero pressure."""
     _, n, m = h.shape
-    count = int(numbers[9])
+    count = int(numbers[_COUNT])
     dx = numbers[_HEAD + count : _HEAD + count + n]
     dy = numbers[_HEAD + count + n : _HEAD + count + n + m]
     conductance, face_thickness, couette = work[:4], work[4:8], work[8:10]
@@ -180,7 +182,7 @@ def _inflow(work, interior, source, pressure, full, out):
 def _pressed(work, interior, source, numbers, table):
     """Solve the film under its rupture condition: what `active_set` returns."""
     allowed = table[_FIXED] == 0.0
-    if numbers[0] == REYNOLDS:
+    if numbers[_CONDITION] == REYNOLDS:
         return active_set(work[:4], interior, source, allowed, allowed & (table[_FULL] != 0.0))
     band, order, pivot = factor_cells(work[:4], interior, allowed)
     pressure = np.zeros_like(source)
@@ -203,7 +205,7 @@ def _slopes(
     slopes[:] = 0.0
     if order.size == 0:
         return
-    length = _DIFFERENCE * numbers[8]
+    length = _DIFFERENCE * numbers[_CLEARANCE]
     h, work, source = np.empty((5, n, m)), np.empty((10, n, m)), np.empty((n, m))
     right, behind = np.empty((4, n, m)), np.empty((n, m))
     for d in range(2):
@@ -219,10 +221,10 @@ def _slopes(
         for i in range(n):
             for j in range(m):
                 if carrying[i, j]:
-                    load = numbers[7] * raised[k, i, j] * table[_AREA, i, j]
+                    load = numbers[_SHARE] * raised[k, i, j] * table[_AREA, i, j]
                     film[k // 2, 0, k % 2] -= load * table[_SHAPES, i, j]
                     film[k // 2, 1, k % 2] -= load * table[_SHAPES + 5, i, j]
-    cos, sin = numbers[1], numbers[2]
+    cos, sin = numbers[_COS], numbers[_SIN]
     for k in range(2):
         a, b, c, d = film[k, 0, 0], film[k, 0, 1], film[k, 1, 0], film[k, 1, 1]
         # the turn on both sides
@@ -247,7 +249,7 @@ def film_at(
     wanted = slopes.shape[0]
     asked = np.array([x, y, vx, vy, speed, numbers.size, planes, n, m, wanted])
     found = np.empty(10)
-    call_address(int(numbers[10]), asked.ctypes, numbers.ctypes, table.ctypes, found.ctypes)
+    call_address(int(numbers[_ADDRESS]), asked.ctypes, numbers.ctypes, table.ctypes, found.ctypes)
     for k in range(wanted):
         for i in range(2):
             for j in range(2):
@@ -263,7 +265,7 @@ def _film_at(asked, numbers, table, found):  # pragma: no cover - compiled
     numbers = carray(numbers, int(asked[5]))
     table = carray(table, (int(asked[6]), n, m))
     slopes = found[2:].reshape(2, 2, 2)
-    cos, sin = numbers[1], numbers[2]
+    cos, sin = numbers[_COS], numbers[_SIN]
     x, y = cos * x + sin * y, cos * y - sin * x
     vx, vy = cos * vx + sin * vy, cos * vy - sin * vx
     h, fields = np.empty((5, n, m)), np.empty((3, n, m))
@@ -277,7 +279,7 @@ def _film_at(asked, numbers, table, found):  # pragma: no cover - compiled
             for face in range(4):
                 interior[face, i, j] = table[_INTERIOR + face, i, j] != 0.0
     work, source = np.empty((10, n, m)), np.empty((n, m))
-    surface = speed * numbers[6]
+    surface = speed * numbers[_RADIUS]
     _continuity(h, fields, interior, numbers, table, surface, squeeze, work, source)
     pressure, full, band, order, _, pivot = _pressed(work, interior, source, numbers, table)
     if pivot != 0:
@@ -289,7 +291,7 @@ def _film_at(asked, numbers, table, found):  # pragma: no cover - compiled
         for j in range(m):
             table[_FULL, i, j] = 1.0 if full[i, j] else 0.0
             p = pressure[i, j]
-            if numbers[0] == HALF_SOMMERFELD and p < 0.0:
+            if numbers[_CONDITION] == HALF_SOMMERFELD and p < 0.0:
                 carrying[i, j] = False
                 p = 0.0
             if table[_FIXED, i, j] != 0.0:
@@ -298,7 +300,7 @@ def _film_at(asked, numbers, table, found):  # pragma: no cover - compiled
             load = p * table[_AREA, i, j]
             fx += load * table[_SHAPES, i, j]
             fy += load * table[_SHAPES + 5, i, j]
-    share = numbers[7]
+    share = numbers[_SHARE]
     if asked[9] > 0.0:
         _slopes(
             x, y, numbers, table, fields, interior, surface, squeeze, pressure, full, carrying,

@@ -134,18 +134,21 @@ class PointStore:
     def find(self, case: Case, speed: float) -> OperatingPoint | None:
         """Return the finished point of `case` at `speed` [rad/s], if there is one."""
         asked["wanted"] += 1
-        row, key = None, _key(case, speed)
+        row, digest = None, _case_digest(case)
         if self._file is not None and not os.environ.get(FRESH):
             with self._trying():
-                row = self._file.execute("SELECT line FROM points WHERE key = ?", key).fetchone()
-        point = None if row is None else _points_of(row[0]).get((_case_digest(case), speed))
+                row = self._file.execute(
+                    "SELECT line FROM points WHERE key = ?", (_key(digest, speed),)
+                ).fetchone()
+        point = None if row is None else _points_of(row[0]).get((digest, speed))
         asked["found"] += point is not None
         return point
 
     def add(self, case: Case, points: Sequence[OperatingPoint]) -> None:
         """Add the converged ones of `points`; another start may bring the others to converge."""
+        digest = _case_digest(case)
         rows = [
-            (*_key(case, point.speed), _line_of(_case_digest(case), [point]))
+            (_key(digest, point.speed), _line_of(digest, [point]))
             for point in points
             if point.converged
         ]
@@ -188,8 +191,8 @@ def _insert(file: sqlite3.Connection, rows: Sequence[tuple[str, str]]) -> None:
         )
 
 
-def _key(case: Case, speed: float) -> tuple[str]:
-    return (f"{model_digest()} {_case_digest(case)} {float(speed).hex()}",)
+def _key(case_digest: str, speed: float) -> str:
+    return f"{model_digest()} {case_digest} {float(speed).hex()}"
 
 
 def _line_of(case_digest: str, points: Sequence[OperatingPoint]) -> str:

@@ -175,23 +175,19 @@ def test_shipped_names_are_completed():
 
 
 def test_keys_of_a_scenario_are_completed():
-    """By the shell's own way: what the program answers to a half-typed command."""
-    words = "rotorsim stability pressure_dam --x speed --y bearing.pocket[0].d"
-    answer = subprocess.run(
-        [sys.executable, "-m", "rotorsim"],
-        env={**os.environ, "_ROTORSIM_COMPLETE": "complete_bash", "COMP_WORDS": words,
-             "COMP_CWORD": "6"},
-        capture_output=True, text=True, timeout=60, check=False,
-    )  # fmt: skip
-    assert "bearing.pocket[0].depth" in answer.stdout.split(), answer
-    nothing = words.replace("pressure_dam", "no_such_file").replace("bearing.pocket[0].d", "lo")
-    answer = subprocess.run(
-        [sys.executable, "-m", "rotorsim"],
-        env={**os.environ, "_ROTORSIM_COMPLETE": "complete_bash", "COMP_WORDS": nothing,
-             "COMP_CWORD": "6"},
-        capture_output=True, text=True, timeout=60, check=False,
-    )  # fmt: skip
-    assert answer.stdout.split() == ["load"], answer
+
+    def completed(scenario: str, half: str) -> list[str]:
+        """By the shell's own way: what the program answers to a half-typed command."""
+        words = f"rotorsim stability {scenario} --x speed --y {half}"
+        asked = {"_ROTORSIM_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": "6"}
+        answer = subprocess.run(
+            [sys.executable, "-m", "rotorsim"], env={**os.environ, **asked}, capture_output=True,
+            text=True, timeout=60, check=False,
+        )  # fmt: skip
+        return answer.stdout.split()
+
+    assert "bearing.pocket[0].depth" in completed("pressure_dam", "bearing.pocket[0].d")
+    assert completed("no_such_file", "lo") == ["load"]
 
 
 def test_a_clearance_is_answered_in_the_unit_of_drawings(nonsense):

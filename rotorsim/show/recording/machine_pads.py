@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import rerun as rr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ...arrays import Array, Indices
 from ...model import Pad
@@ -51,7 +51,8 @@ def log_pads(stream: rr.RecordingStream, shown: MachineRun) -> None:
             rows = shown.rows[thin(shown.rows.size, _ROWS // count)]
             tilt, outwards = pad_motion(shown, name, k, rows)
             reach = radius + pad.thickness + shown.magnification * outwards
-            where = np.column_stack([np.full(rows.size, at), np.outer(reach, _out(pad, shown))])
+            where = np.outer(reach, _outwards(pad.pivot_angle, shown.side))
+            where[:, 0] = at
             half = 0.5 * np.clip(shown.magnification * tilt, -_MOST, _MOST) * shown.side
             zero = np.zeros_like(half)
             turn = np.column_stack([np.sin(half), zero, zero, np.cos(half)])
@@ -61,9 +62,9 @@ def log_pads(stream: rr.RecordingStream, shown: MachineRun) -> None:
             stream.send_columns(entity, shown.index(rows), columns)
 
 
-def _out(pad: Pad, shown: MachineRun) -> Array:
-    """Return the direction from the centre to a pad's pivot, to the side and upwards."""
-    return np.array([shown.side * np.sin(pad.pivot_angle), -np.cos(pad.pivot_angle)])
+def _outwards(angle: ArrayLike, side: float) -> Array:
+    """Return the directions (..., 3) from the centre: along the shaft, to the side, upwards."""
+    return np.stack([np.multiply(0.0, angle), side * np.sin(angle), -np.cos(angle)], axis=-1)
 
 
 def _solid(
@@ -74,7 +75,7 @@ def _solid(
     radius : Of its face [m].
     """
     angle = np.linspace(pad.leading_edge, pad.trailing_edge, _AROUND)
-    out = np.column_stack([np.zeros(angle.size), side * np.sin(angle), -np.cos(angle)])
+    out = _outwards(angle, side)
     along = np.column_stack([np.zeros(angle.size), side * np.cos(angle), np.sin(angle)])
     axis = np.array([1.0, 0.0, 0.0])
     corners = [  # face and back, each at both ends
@@ -83,7 +84,6 @@ def _solid(
             (radius + pad.thickness, -half),
         )
     ]  # fmt: skip
-    middle = np.array([0.0, side * np.sin(pad.pivot_angle), -np.cos(pad.pivot_angle)])
     walls = [(0, 1, -out), (1, 2, axis + 0.0 * out), (2, 3, out), (3, 0, -axis + 0.0 * out)]
     vertices, normals, triangles, first = [], [], [], 0
     for a, b, normal in walls:
@@ -96,5 +96,5 @@ def _solid(
         normals.append(np.repeat(sign * along[end : end + 1 or None], 4, axis=0))
         triangles.append(first + np.array([[0, 1, 2], [0, 2, 3]]))
         first += 4
-    moved = np.vstack(vertices) - (radius + pad.thickness) * middle
-    return moved, np.vstack(normals), np.vstack(triangles).astype(np.uint32)
+    pivot = (radius + pad.thickness) * _outwards(pad.pivot_angle, side)
+    return np.vstack(vertices) - pivot, np.vstack(normals), np.vstack(triangles).astype(np.uint32)
