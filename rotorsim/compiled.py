@@ -46,6 +46,18 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
     return decorate
 
 
+def is_kept(function: Callable[..., Any]) -> bool:
+    """Return whether machine code of a compiled function is on disk."""
+    cache = getattr(function, "_cache", None)
+    if not isinstance(cache, _SourceCache):
+        return False
+    cache._stamp()
+    try:
+        return bool(cache._cache_file._load_index())
+    except Exception:  # unpickling what is damaged may raise anything
+        return False
+
+
 def address_of(function: Callable[..., Any], **options: Any) -> int:
     """Return the address of a compiled function of four pointers to floats, for `call_address`.
 

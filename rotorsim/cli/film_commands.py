@@ -273,18 +273,21 @@ def run(
     if is_machine(scenario):
         _not_of_machines(measured)
         return run_machine(output, scenario, folder, workers)
+    from ..compiled import is_kept
     from ..files.scenario import load_scenario
+    from ..film.rupture.reynolds import active_set
     from ..show.job import write_results
-    from ..study.main_job import compute, summary
+    from ..study.main_job import compiled_ahead, compute, summary
 
     loaded, seen = load_scenario(scenario), _measured(measured)
     name = scenario.stem
     count = len(loaded.radial_clearances) * len(loaded.thermal_models) * len(loaded.speeds)
     output.note(f"{loaded.title}: {count} film points")
-    if not _compiled_before():
-        output.note("first run: the film kernels are compiled now, which can take a minute")
+    if not is_kept(active_set):
+        output.note("first run: numerical code is compiled now, which can take a minute")
     path = table_path(scenario, folder)
-    points, table = computed_table(output, loaded, path, workers, scheduler)
+    with compiled_ahead(loaded):
+        points, table = computed_table(output, loaded, path, workers, scheduler)
     results = replace(compute(loaded, points, table, output.note), measured=seen)
     files, problems = write_results(results, folder, name, output.note)
     problems = [*results.problems, *problems]
@@ -298,14 +301,6 @@ def run(
     for problem in problems:
         output.complain(problem)
     return INCOMPLETE if problems else code
-
-
-def _compiled_before() -> bool:
-    """Return whether an earlier run left compiled code in the cache."""
-    import os
-
-    folder = Path(__file__).parents[1] / "film" / "__pycache__"
-    return bool(os.environ.get("NUMBA_CACHE_DIR")) or any(folder.glob("*.nbi"))
 
 
 def _measured(path: Path | None) -> tuple[Measured, ...]:

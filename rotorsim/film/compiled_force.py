@@ -23,7 +23,7 @@ from .kernels import KERNEL, kernel
 from .layers import LayerIntegrals
 from .operator import assemble
 from .problem import FilmProblem
-from .rupture.reynolds import active_set
+from .rupture.reynolds import MAX_ACTIVE_SET_STEPS, active_set
 
 REYNOLDS, HALF_SOMMERFELD, FULL_SOMMERFELD = 0, 1, 2
 """Rupture conditions that the kernel knows."""
@@ -183,7 +183,8 @@ def _pressed(work, interior, source, numbers, table):
     """Solve the film under its rupture condition: what `active_set` returns."""
     allowed = table[_FIXED] == 0.0
     if numbers[_CONDITION] == REYNOLDS:
-        return active_set(work[:4], interior, source, allowed, allowed & (table[_FULL] != 0.0))
+        start = allowed & (table[_FULL] != 0.0)
+        return active_set(work[:4], interior, source, allowed, start, MAX_ACTIVE_SET_STEPS)
     band, order, pivot = factor_cells(work[:4], interior, allowed)
     pressure = np.zeros_like(source)
     if pivot == 0:

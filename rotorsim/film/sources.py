@@ -42,8 +42,8 @@ def displacement_sources(state: FilmState, shapes: Array) -> Array:
         _add_step_sources(state, operator.steps, shapes, sources)
     _sources(
         conductance, operator.interior, operator.fixed_pressure, operator.face_thickness,
-        couette, operator.fixed, state.solution.raw, shapes, layers.f2, layers.f2_axial,
-        layers.g, rates, state.center_thickness, returned, sources,
+        couette, operator.fixed, state.solution.raw, np.ascontiguousarray(shapes), layers.f2,
+        layers.f2_axial, layers.g, rates, state.center_thickness, returned, sources,
     )  # fmt: skip
     return sources
 

@@ -97,7 +97,7 @@ _CHECK = 1e-10
 """Largest relative error of the roots' sum and product."""
 
 
-@compiled(inline="always", error_model="numpy")
+@compiled(error_model="numpy")
 def _largest_resolvent_root(c2: float, c1: float, c0: float) -> float:
     """Return the real root of y^3 + c2 y^2 + c1 y + c0 that is largest in magnitude, polished."""
     shift = c2 / 3.0
@@ -119,7 +119,7 @@ def _largest_resolvent_root(c2: float, c1: float, c0: float) -> float:
     return y
 
 
-@compiled(inline="always", error_model="numpy")
+@compiled(error_model="numpy")
 def _quadratic(p: complex, q: complex) -> tuple[complex, complex]:
     """Return the roots of s^2 + p s + q, the larger first, without cancellation."""
     half = 0.5 * p
@@ -130,7 +130,7 @@ def _quadratic(p: complex, q: complex) -> tuple[complex, complex]:
     return large, (q / large if large != 0.0 else 0.0 * large)
 
 
-@compiled(inline="always", error_model="numpy")
+@compiled(error_model="numpy")
 def _polish(
     x: float, y: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float]:
@@ -168,7 +168,7 @@ def _polish(
     return x, y, 1.0
 
 
-@compiled(inline="always", error_model="numpy")
+@compiled(error_model="numpy")
 def _conjugate_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float,
@@ -184,7 +184,7 @@ def _conjugate_factors(
     return max(x1, x2) if good and max(d1, d2) <= _TRUST else math.nan
 
 
-@compiled(inline="always", error_model="numpy")
+@compiled(error_model="numpy")
 def _pair(
     p: float, q: float, alpha: float, beta: float, n2: float, n1: float, n0: float
 ) -> tuple[float, float, float, float]:
@@ -201,7 +201,7 @@ def _pair(
     return max(x1, x2), x1 + x2, x1 * x2, max(d1, d2)
 
 
-@compiled(inline="always", error_model="numpy")
+@compiled(error_model="numpy")
 def _real_factors(
     alpha: float, beta: float, n2: float, n1: float, n0: float,
     t: float, l1: float, l0: float, product: float, linear: float,
@@ -222,7 +222,7 @@ def _real_factors(
     return max(x1, x2) if good and max(d1, d2) <= _TRUST else math.nan
 
 
-@compiled(inline="always", error_model="numpy")
+@compiled(error_model="numpy")
 def _largest_real_part(
     alpha: float, beta: float, n2: float, n1: float, n0: float, product: float, linear: float
 ) -> float:

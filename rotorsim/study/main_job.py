@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from ..bearing.drawing import STANDARD_GRAVITY
+from ..compiled import is_kept
 from ..errors import InputError, RotorsimError
 from ..model.orbit import OrbitForce, SpeedRamp
 from ..orbit.description import describe_orbit
@@ -104,6 +106,33 @@ class Attempts:
             where = f"{Path(place.filename).name}:{place.lineno}"
             self.problems.append(f"{label}: {type(error).__name__}: {error} ({where})")
         return instead
+
+
+@contextmanager
+def compiled_ahead(scenario: Scenario) -> Iterator[None]:
+    """Compile what orbits and maps call in another process, while the block computes films.
+
+    Once for an installation: afterwards the machine code is on disk.
+    """
+    from ..orbit.march import march
+    from .sweep import background
+
+    if scenario.orbit is None or is_kept(march):
+        yield
+        return
+    with background(_compile_motion):
+        yield
+
+
+def _compile_motion() -> None:
+    from ..machine.rates import growth_rate_map
+    from ..orbit import OrbitProblem, ShortBearingForce, SpeedSchedule, simulate
+    from ..rotor import Rotor
+
+    growth_rate_map(np.eye(2), np.eye(2), [1.0])
+    film = ShortBearingForce(viscosity=0.01, length=0.02, radius=0.02, radial_clearance=1e-4)
+    schedule = SpeedSchedule.constant(100.0, 1.0)
+    simulate(OrbitProblem(film, Rotor.rigid(1.0), schedule, static_load=(10.0, 0.0)))
 
 
 def compute(

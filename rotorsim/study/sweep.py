@@ -31,7 +31,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..arguments import refuse_path
 from ..bearing.operating_point import OperatingPoint, failed_point
+from ..compiled import is_kept
 from ..errors import InputError
+from ..film.rupture.reynolds import active_set
 from ..model import Case
 from .finished import Journal, PointStore, model_digest
 
@@ -373,6 +375,15 @@ def stream(
                 future.cancel()
 
 
+@contextmanager
+def background(function: Callable[[], object]) -> Iterator[None]:
+    """Call a function in another process during the block; wait for its end."""
+    with _one_thread_each(), _pool(1) as pool:
+        with _anonymous_main():
+            pool.submit(function)
+        yield
+
+
 def _drain(
     pool: ProcessPoolExecutor,
     waiting: deque[_Chunk],
@@ -381,8 +392,10 @@ def _drain(
     solve_case: Callable[..., Any] | None,
 ) -> Iterator[tuple[_Chunk, Points]]:
     """Keep the pool busy and no more: what it holds when it breaks must be done again."""
+    # In a first run one process compiles for all.
+    limit = 2 * workers if is_kept(active_set) else 1
     while waiting or running:
-        while waiting and len(running) < 2 * workers:
+        while waiting and len(running) < limit:
             with _anonymous_main():
                 future = pool.submit(_solve_chunk, waiting[0], solve_case)
             running[future] = waiting.popleft()
@@ -392,6 +405,7 @@ def _drain(
                 future.result()  # raises: the pool is lost, and what is running with it
             chunk = running.pop(future)
             yield chunk, _result_or_failure(future, chunk)
+        limit = 2 * workers
 
 
 def _one_by_one(

@@ -7,9 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from linear_orbits import constant_coefficients
 
 import rotorsim
+from rotorsim.orbit import LinearForce, OrbitProblem, ShortBearingForce, SpeedSchedule, simulate
+from rotorsim.orbit.march import march
+from rotorsim.rotor import Rotor
 
 PACKAGE = Path(rotorsim.__file__).parents[1]
 CALLED = (
@@ -87,3 +92,36 @@ def test_without_a_folder_code_is_compiled_anew_and_that_is_said_once(sources: P
         done = run(sources, code, **environment)
         assert done.stdout.split() == ["8.0", "0", "1"]
         assert done.stderr.count("compiled code cannot be kept here") == 1
+
+
+def test_the_steps_of_a_motion_are_compiled_once():
+    """For one type of each argument: read-only matrices would be another."""
+    film = ShortBearingForce(viscosity=0.01, length=0.02, radius=0.02, radial_clearance=1e-4)
+    linear = LinearForce(constant_coefficients(1e6 * np.eye(2), 1e3 * np.eye(2)), 1e-4)
+    for force in (film, linear):
+        for speeds in (SpeedSchedule.constant(100.0, 1.0), SpeedSchedule.ramp(100.0, 200.0, 0.1)):
+            simulate(OrbitProblem(force, Rotor.rigid(1.0), speeds, static_load=(10.0, 0.0)))
+    assert len(march.signatures) == 1, march.signatures
+
+
+def test_what_is_kept_on_disk_is_known(sources: Path):
+    code = (
+        "from calls import calls\nfrom rotorsim.compiled import is_kept\n"
+        "print(is_kept(calls)); calls(3.0); print(is_kept(calls))"
+    )
+    assert run(sources, code).stdout.split() == ["False", "True"]
+    assert run(sources, code).stdout.split() == ["True", "True"]
+
+
+@pytest.mark.slow
+def test_the_main_job_compiles_ahead(tmp_path: Path):
+    code = (
+        "from rotorsim import load_scenario; from rotorsim.compiled import is_kept\n"
+        "from rotorsim.machine.rates import _fill_rates; from rotorsim.orbit.march import march\n"
+        "from rotorsim.study.main_job import compiled_ahead\n"
+        f"with compiled_ahead(load_scenario({str(PACKAGE / 'scenarios' / 'dal.toml')!r})):\n"
+        "    print(is_kept(march))\n"
+        "print(is_kept(march), is_kept(_fill_rates))"
+    )
+    answer = run(tmp_path, code, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+    assert answer.stdout.split() == ["False", "True", "True"]

@@ -24,7 +24,7 @@ from ..kernels import kernel
 from ..operator import FilmOperator, neighbour
 from .base import ConnectedFilm, PressureSolution, Terms, source_term, with_fixed
 
-_MAX_ACTIVE_SET_STEPS = 400
+MAX_ACTIVE_SET_STEPS = 400
 _PATIENCE = 3
 """Linear solves from a neighbouring film, before a coarser mesh is asked where the film is full."""
 _COARSEST = 16
@@ -75,7 +75,7 @@ def _coarse_guess(
     if not film.any():  # lands of one cell between grooves
         return ~fixed
     guess = _coarse_guess(*coarse) & film
-    _, full, *_ = active_set(coarse[0], coarse[1], coarse[3], film, guess)
+    _, full, *_ = active_set(coarse[0], coarse[1], coarse[3], film, guess, MAX_ACTIVE_SET_STEPS)
     return full[_group(np.arange(n), n)][:, _group(np.arange(m), m)]
 
 
@@ -124,11 +124,13 @@ def _active_set(
         known = start is not None
         if start is None:
             start = _coarse_guess(conductance, interior, operator.fixed, source)
-        patience = _PATIENCE if known else _MAX_ACTIVE_SET_STEPS
+        patience = _PATIENCE if known else MAX_ACTIVE_SET_STEPS
         found = active_set(conductance, interior, source, allowed, start & allowed, patience)
         if found[-1] < 0 and known:  # far from the film that it started from
             start = _coarse_guess(conductance, interior, operator.fixed, source)
-            found = active_set(conductance, interior, source, allowed, start & allowed)
+            found = active_set(
+                conductance, interior, source, allowed, start & allowed, MAX_ACTIVE_SET_STEPS
+            )
     pressure, full, band, order, steps, pivot = found
     if pivot > 0:
         raise SingularFilmError.at(pivot)
@@ -147,7 +149,7 @@ def active_set(
     source: Array,
     allowed: Booleans,
     start: Booleans,
-    patience: int = _MAX_ACTIVE_SET_STEPS,
+    patience: int,
 ) -> tuple[Array, Booleans, Array, Indices, int, int]:
     """Find the cells that are full: p >= 0 there, and oil is drawn away from all others.
 
