@@ -227,6 +227,8 @@ def _machine_document(study: MachineControlStudy, model: str) -> dict[str, Any]:
             "hankel_singular_values": reduction.hankel[:40],
         },
         "feedback": {name: getattr(feedback, name) for name in ("a", "b", "c", "d", "w")},
+        "sample_time": feedback.sample_time or None,
+        "delay": feedback.delay,
         "max_force": feedback.max_force,
         "largest_force": study.largest_force,
         "saturates": study.saturates,
@@ -266,6 +268,10 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
         f"{number(100 * reduction.error / reduction.scale, 2)} % of the largest gain, "
         f"bound {number(100 * reduction.bound / reduction.scale, 2)} %",
     )
+    feedback = study.feedback
+    if feedback.sample_time:
+        late = f", forces {number(feedback.delay * 1e6)} µs later" if feedback.delay else ""
+        facts.add_row("sampled", f"each {number(feedback.sample_time * 1e6)} µs{late}")
     facts.add_row("modulus margin", number(study.margin, 3))
     if study.largest_force is not None:
         of = ", saturates" if study.saturates else ""

@@ -257,11 +257,18 @@ def _say_motion(output: Output, motion: Motion, files: list[Path]) -> int:
         for row in document["stations"]
     ]  # fmt: skip
     head = heads("station", "max e/c", "amplitude µm", "whirl ratio", "outcome")
-    table = grid(f"Motion: {document['note']}", *head, rows=rows)
+    shown_tables = [grid(f"Motion: {document['note']}", *head, rows=rows)]
+    if document["actuators"]:
+        forces = [
+            [one["signal"], number(one["largest_force"]), f"{number(100 * one['saturated'], 2)} %"]
+            for one in document["actuators"]
+        ]
+        head = heads("actuator", "largest force N", "at its limit")
+        shown_tables.append(grid("Control", *head, rows=forces))
     said = f"recorded in {files[0]}; look at it: rotorsim view {as_typed(files[0])}"
     output.results(
         document | {"recording": files[0], "figures": files[1:]},
-        lambda: [table, *map(str, files[1:]), said],
+        lambda: [*shown_tables, *map(str, files[1:]), said],
     )
     output.note(
         f"{document['unknowns']} unknowns; eigenvalues changed by the reduction: "

@@ -367,6 +367,28 @@ def modulus_margin(system: control.StateSpace, feedback: OutputFeedback) -> floa
     return float(np.linalg.svd(loop, compute_uv=False).min())
 
 
+def controlled_response(
+    system: control.StateSpace, feedback: OutputFeedback, frequency: Array
+) -> ComplexArray:
+    """Return the displacement per force with the loop closed, (n, outputs, inputs) [m/N].
+
+    frequency : (n,) array [rad/s]. Of a sampled feedback below half its sampling frequency, NaN
+        beyond: hold and delay count, the aliases that they leave do not.
+    """
+    a, b, c = feedback.plant(system)
+    period, at = feedback.sample_time, np.asarray(frequency, dtype=float)
+    law = response(feedback.a, feedback.b, feedback.c, feedback.d)
+    acting = law(at)
+    if period:
+        turn = 1j * at * period
+        hold = (1.0 - np.exp(-turn)) / turn * np.exp(-1j * at * feedback.delay)
+        known = np.where(at < np.pi / period, hold, np.nan)
+        acting = law(np.exp(turn) / 1j) * known[:, None, None]
+    plant = response(a, b, c)(at)
+    every: Any = np.linalg.solve(np.eye(len(c)) - plant @ acting, plant)
+    return every
+
+
 @dataclass(frozen=True, eq=False)
 class LinearMotion:
     """Motion of a machine at its sensors, and its actuators' forces.

@@ -501,6 +501,9 @@ class MachineControl:
     reduction_error : Of the reduced model: bound on the error of the receptance from actuators to
         sensors, as a share of its largest stable part; less where the feedback would drive what is
         left out.
+    sample_time : Of a digital controller: the design by the bilinear rule, its forces held from
+        sample to sample [s]. By default it is continuous.
+    delay : From a sample to when its forces act [s].
     """
 
     actuator: Annotated[tuple[str, ...], Example(["250 mm"])]
@@ -512,6 +515,12 @@ class MachineControl:
     force_scale: Annotated[float, Quantity("force", "500 N")] | None = None
     noise: Annotated[float, Quantity("length", "1 um")] = 1e-6
     reduction_error: Annotated[float, Number(above=0.0, most=0.5)] = 1e-3
+    sample_time: Annotated[float, Quantity("time", "100 us")] | None = None
+    delay: Annotated[float, Quantity("time", "50 us", "not_negative")] = 0.0
+
+    def __post_init__(self) -> None:
+        if self.delay and self.sample_time is None:
+            raise InputError('goes with a sample_time: "100 us", say', key="control.delay")
 
 
 def distinct_names(entries: Sequence[Any], word: str) -> tuple[str, ...]:

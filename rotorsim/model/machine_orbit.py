@@ -137,6 +137,7 @@ class MachineOrbit:
     initial_displacement, initial_velocity : Of the whole rotor from its static position [m, m/s].
     step, harmonic, blade_loss, rub : Any number of each.
     base_motion, base_shock : Or None.
+    control : Whether the feedback of ``[control]`` acts.
     modes : Of the rotor between its kept places; by default as many as its eigenvalues need.
     relative_tolerance : Of one step.
     """
@@ -159,6 +160,7 @@ class MachineOrbit:
     rub: tuple[Rub, ...] = ()
     base_motion: BaseMotion | None = None
     base_shock: BaseShock | None = None
+    control: bool = False
     modes: Annotated[int, Number(least=0, most=10_000)] | None = None
     samples_per_revolution: Annotated[int, Number(least=16, most=4096)] = 64
     relative_tolerance: Annotated[float, Number(least=1e-12, most=1e-2)] | None = None

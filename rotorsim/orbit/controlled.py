@@ -11,12 +11,12 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag
 
-from ..arrays import Array
+from ..arrays import Array, ComplexArray
 from ..errors import InputError
 from ..machine.control import signal_name
 from ..machine.output_feedback import OutputFeedback, unknown_signal
@@ -59,8 +59,73 @@ class Loop:
         return np.clip(wanted, -self.feedback.max_force, self.feedback.max_force)
 
 
-def with_controller(
-    problem: MotionProblem, feedback: OutputFeedback, rest: Array,
+class Signals(NamedTuple):
+    """Displacements of the whole machine, by number, that a controller measures and drives.
+
+    rates : Whether it measures the velocity there.
+    """
+
+    measured: tuple[int, ...]
+    rates: tuple[bool, ...]
+    driven: tuple[int, ...]
+
+    @property
+    def places(self) -> set[int]:
+        """All of them."""
+        return {*self.measured, *self.driven}
+
+    def rows(self, basis: Array) -> Array:
+        """Return what leads from unknowns and their rates to the sensors, (p, 2 n)."""
+        seen = basis[list(self.measured)]
+        still, rates = np.zeros_like(seen), np.array(self.rates)[:, None]
+        return np.hstack([np.where(rates, still, seen), np.where(rates, seen, still)])
+
+
+def signals_of(feedback: OutputFeedback, names: Sequence[tuple[str, str]]) -> Signals:
+    """Return where a controller measures and acts.
+
+    names : Node and unknown of each displacement of the whole machine.
+    Raises InputError: A signal is not there.
+    """
+    known = {
+        word: {f"{signal_name(node)}{word}_{unknown}": i for i, (node, unknown) in enumerate(names)}
+        for word in ("displacement", "velocity", "force")
+    }
+    measured, rates = [], []
+    for name in feedback.sensors:
+        word = "velocity" if name in known["velocity"] else "displacement"
+        if name not in known[word]:
+            raise unknown_signal("sensors", name, [*known["displacement"]])
+        measured.append(known[word][name])
+        rates.append(word == "velocity")
+    for name in feedback.actuators:
+        if name not in known["force"]:
+            raise unknown_signal("actuators", name, [*known["force"]])
+    driven = (known["force"][name] for name in feedback.actuators)
+    return Signals(tuple(measured), tuple(rates), tuple(driven))
+
+
+def closed_eigenvalues(
+    feedback: OutputFeedback, matrix: Array, mass: Array, basis: Array,
+    names: Sequence[tuple[str, str]],
+) -> ComplexArray:  # fmt: skip
+    """Return the eigenvalues of a linear machine with a controller [1/s].
+
+    matrix : (2 n, 2 n) array. Of the machine's displacements and rates.
+    basis : (k, n) array. From its displacements to those of the whole machine.
+    """
+    import control
+
+    signals = signals_of(feedback, names)
+    acting = np.linalg.solve(mass, basis[list(signals.driven)].T)
+    inputs = np.vstack([np.zeros_like(acting), acting])
+    rows = signals.rows(basis)
+    nothing = np.zeros((len(rows), inputs.shape[1]))
+    system: Any = control.ss(matrix, inputs, rows, nothing, inputs=list(feedback.actuators))
+    return replace(feedback, sensors=()).eigenvalues(system)
+
+
+def with_controller(    problem: MotionProblem, feedback: OutputFeedback, rest: Array,
     names: Sequence[tuple[str, str]],
 ) -> MotionProblem:  # fmt: skip
     """Return the motion with a controller that measures from a rest position.
@@ -70,28 +135,12 @@ def with_controller(
     Raises InputError: A signal is not there, or a torque drives what a sampled controller holds.
     """
     system, n = problem.system, problem.system.size
-    dt = feedback.sample_time
+    dt, signals = feedback.sample_time, signals_of(feedback, names)
     if dt and not isinstance(problem.drive, SpeedSchedule):
         raise InputError("needs a prescribed speed, no torque", key="controller.sample_time")
-    place = {(signal_name(node), unknown): i for i, (node, unknown) in enumerate(names)}
-    known = {
-        word: {"".join((node, word, "_", axis)): i for (node, axis), i in place.items()}
-        for word in ("displacement", "velocity", "force")
-    }
-    rows, offset = [], []
-    for name in feedback.sensors:
-        word = "velocity" if name in known["velocity"] else "displacement"
-        if name not in known[word]:
-            raise unknown_signal("sensors", name, [*known["displacement"]])
-        row = system.basis[known[word][name]]
-        still = np.zeros(n)
-        rows.append(np.concatenate([row, still] if word == "displacement" else [still, row]))
-        offset.append(row @ rest if word == "displacement" else 0.0)
-    for name in feedback.actuators:
-        if name not in known["force"]:
-            raise unknown_signal("actuators", name, [*known["force"]])
-    acting = system.basis[[known["force"][name] for name in feedback.actuators]].T
-    loop = Loop(feedback, np.array(rows), np.array(offset), n)
+    acting = system.basis[list(signals.driven)].T
+    rows = signals.rows(system.basis)
+    loop = Loop(feedback, rows, rows[:, :n] @ rest, n)
     more = len(feedback.actuators) if dt else len(feedback.a)
     a, b, c, d, w = feedback.a, feedback.b, feedback.c, feedback.d, feedback.w
     wider: dict[str, Any] = {
@@ -123,6 +172,8 @@ def with_controller(
         scale=np.concatenate([system.scale, scale]),
         basis=np.hstack([system.basis, np.zeros((len(system.basis), more))]),
         unbalance=tuple((t, np.concatenate([u, none])) for t, u in system.unbalance),
+        turned_offset=None if system.turned_offset is None
+        else np.concatenate([system.turned_offset, none]),
         loads=tuple(
             load._replace(amplitude=np.concatenate([load.amplitude, none]))
             for load in system.loads

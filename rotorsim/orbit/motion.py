@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array, Indices
 from ..errors import InputError
 from ..threads import on_one_blas_thread
-from .controlled import Advance, Answer, Loop, Sampled
+from .controlled import Advance, Answer, Loop, Sampled, signals_of
 from .kernels import shaft
 from .march import DONE, TOUCHED, march, repeat
 from .orbit import Orbit, OrbitEvent, OrbitStatus
@@ -255,7 +255,7 @@ class Motion:
         x, y, vx, vy = (np.ascontiguousarray(column) for column in motion[:, :4].T)
         return Orbit(
             t=self.t, x=x, y=y, vx=vx, vy=vy, speed=self.speed, angle=self.angle,
-            fx=force[:, 0], fy=force[:, 1], load=zero, actuator_force=zero,
+            fx=force[:, 0], fy=force[:, 1], load=zero, actuator_force=self._actuator_at(rows),
             displacements=motion[:, :2], min_film=clearance - np.hypot(x, y),
             boundary=clearance * np.column_stack([np.cos(turn), np.sin(turn)]),
             samples_per_revolution=self.problem.samples_per_revolution,
@@ -266,6 +266,14 @@ class Motion:
             forced=bool(system.unbalance or system.loads), forcing=self.problem.forcing,
             kind=self.problem.kind, note=self.problem.note,
         )  # fmt: skip
+
+    def _actuator_at(self, rows: Sequence[int]) -> Array:
+        """Return the force (m, 2) of a controller on displacements x and y of a node [N]."""
+        loop = self.problem.loop
+        if loop is None:
+            return np.zeros((self.t.size, 2))
+        driven = np.array(signals_of(loop.feedback, self.problem.system.names).driven)
+        return self.actuator_force @ (driven[:, None] == np.array(rows)).astype(float)
 
     def ring_speed(self, name: str) -> Array:
         """Return the speed (m,) of the floating ring of a support [rad/s].

@@ -437,6 +437,7 @@ def machine_control_figures(
     study: MachineControlStudy, title: str = ""
 ) -> Iterator[tuple[str, Figure]]:
     """Return the receptance from actuator to sensor, whole and reduced, and the runs in time."""
+    from ..machine.output_feedback import controlled_response
     from ..machine.reduction import response
     from .figures import bode_plot
     from .figures.machine import control_traces
@@ -444,15 +445,11 @@ def machine_control_figures(
     heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.design.name}".strip()
     frequency = np.geomspace(0.05 * study.speed, 6.0 * study.speed, 800)
     system, small = study.system, study.reduction.system
-    closed, _ = study.feedback.closed_loop(system)
-    more = closed.shape[0] - system.nstates
-    inputs = np.vstack([system.B, np.zeros((more, system.ninputs))])
-    outputs = np.hstack([system.C, np.zeros((system.noutputs, more))])
     responses = [
         ("whole machine", response(system.A, system.B, system.C)(frequency)[:, 0, 0]),
         (f"reduced to {small.nstates} states",
          response(small.A, small.B, small.C)(frequency)[:, 0, 0]),
-        ("with control", response(closed, inputs, outputs)(frequency)[:, 0, 0]),
+        ("with control", controlled_response(system, study.feedback, frequency)[:, 0, 0]),
     ]  # fmt: skip
     yield "control_bode", bode_plot(frequency, responses, "x sensor/force x [m/N]", title=heading)
     if study.controlled is not None and study.passive is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -132,14 +132,17 @@ def study_machine_control(
     while True:
         reduction = reduced(system, share)
         feedback = _designed(reduction.system, settings, speed)
-        growth = np.linalg.eigvals(feedback.closed_loop(system)[0]).real.max()
+        growth = float(feedback.eigenvalues(system)[0].real)
         left_out = reduction.system.nstates < system.nstates
         if growth < 0.0 or not left_out or share < _LEAST_ERROR:
             break
         # What the reduced model leaves out is excited by the feedback: leave out less.
         share /= 10.0
-    closed, _ = feedback.closed_loop(system)
-    passive, controlled = (_least_stable_first(a) for a in (np.asarray(system.A), closed))
+    passive = _least_stable_first(np.asarray(system.A))
+    if feedback.sample_time:
+        controlled = feedback.eigenvalues(system)
+    else:
+        controlled = _least_stable_first(feedback.closed_loop(system)[0])
     runs: list[LinearMotion | None] = [None, None]
     if revolutions:
         start = _start(machine, speed, disturbance)
@@ -156,8 +159,30 @@ def study_machine_control(
     )  # fmt: skip
 
 
+def designed_feedback(machine: MachineFile, speed: float) -> OutputFeedback:
+    """Return the feedback of a file's ``[control]``.
+
+    speed : Where it is designed, unless the table says [rad/s].
+    Raises InputError: As `study_machine_control`; the table is missing, a film did not converge.
+    """
+    from .machines import assembled
+
+    if machine.control is None:
+        raise InputError('is missing: actuator = ["250 mm"], for orbit.control', key="control")
+    settings = replace(machine.control, speed=machine.control.speed or speed)
+    whole = machine.with_parts(operating=replace(machine.operating, speed=(settings.speed,)))
+    return study_machine_control(whole, assembled(whole), settings, revolutions=0).feedback
+
+
 def _designed(small: Any, settings: MachineControl, speed: float) -> OutputFeedback:
-    """Return the feedback of the reduced machine."""
+    """Return the feedback of the reduced machine, sampled where the settings say so."""
+    feedback = _continuous(small, settings, speed)
+    if settings.sample_time is None:
+        return feedback
+    return feedback.sampled(settings.sample_time, settings.delay)
+
+
+def _continuous(small: Any, settings: MachineControl, speed: float) -> OutputFeedback:
     limit = settings.max_force
     if settings.design is Design.PD:
         return pd_of_sensors(small, _CORNER * speed, limit)

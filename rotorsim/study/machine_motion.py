@@ -9,17 +9,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..arrays import Array, ComplexArray, Indices
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..machine.machine import Machine
+from ..machine.output_feedback import OutputFeedback
 from ..machine.peaks import node_at
 from ..model.machine_orbit import MachineOrbit
 from ..model.orbit import SpeedRamp
+from ..orbit.controlled import closed_eigenvalues, signals_of, with_controller
 from ..orbit.film_force import SolvedFilmForce
 from ..orbit.motion import Motion, MotionProblem, Station, simulate_motion
 from ..orbit.system import GROUND, Harmonic, Link, MotionSystem, derivatives
 from ..rotor.reduction import reduce_rotor
+from .machine_control import designed_feedback
 from .machine_supports import seal_mounts
 from .motion_statics import linear_block, rest_position
 from .motion_supports import MotionParts
@@ -42,6 +45,7 @@ def simulate(
     orbit: MachineOrbit | None = None,
     problem: MotionProblem | None = None,
     result: MachineResult | None = None,
+    controller: Any = None,
     consume: Callable[[Motion], None] | None = None,
 ) -> Motion:
     """Integrate a machine's motion in time.
@@ -50,6 +54,10 @@ def simulate(
     orbit : In place of the file's.
     problem : From `motion_problem`, where it is there already.
     result : The machine's films over speed, where they are solved already.
+    controller : From sensors to actuators at any nodes, about the static position at the first
+        speed: an `OutputFeedback`, or a continuous or sampled system of python-control whose
+        signals are named as those of `rotorsim.state_space` (see `OutputFeedback.of`). By default
+        that of the file's ``[control]`` where ``orbit.control`` is set.
     consume : Called with each piece of some revolutions as soon as it is there.
 
     Returns
@@ -57,17 +65,18 @@ def simulate(
     Motion
         How the run ended is its ``status``; of a run of more than a million samples the last ones.
 
-    Raises InputError: The file has no orbit, a film cannot have the force asked for, or a speed
-        lies outside its bearings' range.
+    Raises InputError: The file has no orbit, a film cannot have the force asked for, a speed lies
+        outside its bearings' range, or a controller's signal is not there.
     """
-    problem = problem or motion_problem(machine, orbit, result)
+    problem = problem or motion_problem(machine, orbit, result, controller)
     keep = _MAX_SAMPLES // problem.samples_per_revolution
     return simulate_motion(problem, consume=consume, keep_revolutions=keep)
 
 
 def motion_problem(
-    machine: MachineFile, orbit: MachineOrbit | None = None, result: MachineResult | None = None
-) -> MotionProblem:
+    machine: MachineFile, orbit: MachineOrbit | None = None, result: MachineResult | None = None,
+    controller: Any = None,
+) -> MotionProblem:  # fmt: skip
     """Put a machine's motion together; see `simulate`."""
     if not isinstance(machine, MachineFile):
         raise InputError(
@@ -81,7 +90,13 @@ def motion_problem(
             key="orbit",
         )  # fmt: skip
     try:
-        return _Builder(machine, settings, result).problem()
+        builder = _Builder(machine, settings, result)
+        if controller is None and settings.control:
+            controller = designed_feedback(machine, builder.drive.speeds[0])
+        elif controller is not None and not isinstance(controller, OutputFeedback):
+            controller = OutputFeedback.of(controller)
+        builder.controller = controller
+        return builder.problem()
     except InputError as error:
         if error.source is not None:
             raise
@@ -92,6 +107,8 @@ def motion_problem(
 
 class _Builder(MotionParts):
     """The equations of one machine with one [orbit]."""
+
+    controller: OutputFeedback | None = None
 
     def problem(self) -> MotionProblem:
         """Return everything together; the reduction is refined until its error is small enough."""
@@ -153,7 +170,7 @@ class _Builder(MotionParts):
             **matrices, constant=constant, scale=scale, basis=basis, offset=offset,
             unbalance=self._unbalance(basis, total), links=links,
             block=linear_block(self, linear, place, {}), loads=self._loads(basis, whole["mass"]),
-            names=(*rotor.unknowns, *linear.unknowns[size:], *((n, u) for n, u, _ in self.own)),
+            names=self._names(linear),
             turned_offset=basis.T @ (whole["circulatory"] @ offset),
         )  # fmt: skip
         rest = rest_position(self, system)
@@ -176,12 +193,15 @@ class _Builder(MotionParts):
         error = 0.0
         if modes is not None and reduction.kept.size + modes < size:
             error = self._reduction_error(system, rest, velocity * 0.0, whole, place)
-        return MotionProblem(
+        problem = MotionProblem(
             system, self.drive, start, velocity, rest, self._stations(system),
             self.settings.samples_per_revolution, self.settings.relative_tolerance,
             self._label(), self.settings.thermal_model or "", self._note(), error,
             tuple(entry.frequency for entry in self.settings.harmonic),
         )  # fmt: skip
+        if self.controller is None:
+            return problem
+        return with_controller(problem, self.controller, rest, system.names)
 
     def _kept(self, linear: Machine) -> list[int]:
         size = self.rotor.size
@@ -192,7 +212,13 @@ class _Builder(MotionParts):
                                          *self.machine.seal)]  # fmt: skip
         nodes = [node_at(self.rotor, at) for at in places]
         nodes += [int(i) for i in np.flatnonzero(self.rotor.unbalance)]
+        if self.controller is not None:
+            kept += [i for i in signals_of(self.controller, self._names(linear)).places if i < size]
         return sorted({*kept, *(i for node in nodes for i in self.rotor.planes[node])})
+
+    def _names(self, linear: Machine) -> tuple[tuple[str, str], ...]:
+        own = ((name, unknown) for name, unknown, _ in self.own)
+        return (*self.rotor.unknowns, *linear.unknowns[self.rotor.size :], *own)
 
     def _scale(self, basis: Array) -> Array:
         films = [link.force.radial_clearance for link in self.links if link.film]
@@ -276,16 +302,19 @@ class _Builder(MotionParts):
         big_c[at] += added_c[here]
         reach = max([speed, *(entry.frequency for entry in self.settings.harmonic)])
 
-        def poles(m: Array, c: Array, k: Array) -> Array:
+        def poles(m: Array, c: Array, k: Array, basis: Array) -> ComplexArray:
             n = len(m)
             matrix = np.zeros((2 * n, 2 * n))
             matrix[:n, n:] = np.eye(n)
             matrix[n:] = -np.linalg.solve(m, np.hstack([k, c]))
-            return np.asarray(eigvals(matrix))
+            if self.controller is None:
+                return np.asarray(eigvals(matrix), dtype=complex)
+            return closed_eigenvalues(self.controller, matrix, m, basis, system.names)
 
-        exact = poles(whole["mass"], big_c, big_k)
-        exact = exact[np.abs(exact) <= reach]
-        ours = poles(system.mass, c, k)
+        exact = poles(whole["mass"], big_c, big_k, np.eye(len(big_k)))
+        # a controller may drive any mode: what it makes grow counts, however fast
+        exact = exact[(np.abs(exact) <= reach) | (exact.real > 0.0)]
+        ours = poles(system.mass, c, k, system.basis)
         if not exact.size:
             return 0.0
         apart = np.abs(exact[:, None] - ours[None]).min(axis=1)

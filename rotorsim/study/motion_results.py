@@ -63,8 +63,23 @@ def motion_document(motion: Motion) -> dict[str, Any]:
         "unknowns": problem.system.size,
         "reduction_error": problem.reduction_error,
         "ring_speeds": rings,
+        "actuators": _actuators(motion),
         "stations": rows,
     }
+
+
+def _actuators(motion: Motion) -> list[dict[str, Any]]:
+    """Return each actuator's largest force and the share of the run in which it saturates."""
+    loop = motion.problem.loop
+    if loop is None or not motion.t.size:
+        return []
+    size = np.abs(motion.actuator_force)
+    full = size >= (1.0 - 1e-9) * loop.feedback.max_force
+    return [
+        {"signal": name, "largest_force": float(size[:, k].max()),
+         "saturated": float(full[:, k].mean())}
+        for k, name in enumerate(loop.feedback.actuators)
+    ]  # fmt: skip
 
 
 def films_in_motion(motion: Motion) -> list[FilmFrame]:
