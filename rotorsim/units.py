@@ -168,7 +168,7 @@ def parse_unit(
 
 
 class _Refusal(Exception):
-    """Why a text is not the quantity wanted."""
+    """Reason for which a text is not the quantity wanted."""
 
 
 def _one(kind: _Kind) -> str:

@@ -274,7 +274,7 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
 
 
 def _study_document(study: ControlStudy) -> dict[str, Any]:
-    """A control study for JSON."""
+    """Return a control study for JSON."""
 
     def motion(orbit: Any, values: Any) -> dict[str, Any]:
         return {
@@ -308,7 +308,7 @@ def _study_document(study: ControlStudy) -> dict[str, Any]:
 
 
 def _study_tables(study: ControlStudy) -> list[Any]:
-    """A control study for people."""
+    """Return the tables of a control study."""
     from .tables import grid
 
     said = _study_document(study)
@@ -335,7 +335,7 @@ def _study_tables(study: ControlStudy) -> list[Any]:
 
 
 def _force_words(study: ControlStudy) -> str:
-    """The actuator's force in the run in time, and what it had to do."""
+    """Describe the actuator's force in the run in time, and what it had to do."""
     limit = study.feedback.max_force
     of = "unlimited" if limit == float("inf") else f"of {number(limit)} N"
     said = f"largest actuator force {number(study.largest_force)} N, {of}"

@@ -328,7 +328,7 @@ def analysed(
 def _closing(
     output: Output, results: dict[str, MachineResult], spots: HotSpotStudy | None = None
 ) -> int:
-    """Say the verdict and what did not converge; return the exit code."""
+    """Print the verdict and what did not converge; return the exit code."""
     failures = tables.failure_lines(results)
     _say_free(output, results[next(reversed(results))].description)
     for text in failures:

@@ -88,7 +88,7 @@ def _axis(letter: str) -> Any:
 
 
 def _inputs(ctx: typer.Context, incomplete: str) -> list[str]:
-    """What an axis of a map may be, keys of the scenario included, for the shell's completion."""
+    """Return the names that an axis of a map may have, scenario keys included, for completion."""
     names = [str(axis) for axis in _Axis]
     with suppress(Exception):  # no such file, or not yet TOML
         path = file_or_shipped(Path(ctx.args[0]))  # what is half typed is not taken apart yet

@@ -1,4 +1,4 @@
-"""What the main job computed, shown: figures, recordings, and the summary in words."""
+"""Figures, recordings and the summary in words of the main job."""
 
 from __future__ import annotations
 
@@ -305,7 +305,7 @@ def _markdown_summary(results: Results) -> str:
 
 
 def _conclusion(facts: Mapping[str, Any]) -> list[str]:
-    """Say what the orbits at constant speed show of heating; nothing without both models."""
+    """Describe what the orbits at constant speed show of heating; nothing without both models."""
     rates = {
         row["thermal_model"]: row
         for row in facts["orbits"]

@@ -75,7 +75,7 @@ class Results:
 
     @cached_property
     def orbit_rows(self) -> list[dict[str, Any]]:
-        """What each orbit comes to (see `describe_orbit`)."""
+        """Return the description of each orbit (see `describe_orbit`)."""
         return [describe_orbit(orbit) for orbit in self.orbits]
 
     @property

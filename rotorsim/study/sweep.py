@@ -157,7 +157,7 @@ def tabulate(
 
 
 def as_table(points: Sequence[OperatingPoint], scenario: Scenario) -> CoefficientTable:
-    """Table of `points` with the provenance of `scenario`."""
+    """Return the table of `points` with the provenance of `scenario`."""
     from ..bearing.table import CoefficientTable
 
     mesh = scenario.film.mesh

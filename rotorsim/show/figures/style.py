@@ -124,7 +124,7 @@ def figure_of(ax: Axes) -> Figure:
 
 @dataclass(frozen=True)
 class FigureFiles:
-    """How figures are written where something else than usual is asked for.
+    """Style, width and format of figure files where they differ from the usual.
 
     formats : Suffixes; None: as the command does.
     width : Of each figure [inch]; its height follows. None: as drawn.
