@@ -356,7 +356,7 @@ class _Work:
     @property
     def mesh_size(self) -> MeshSize | None:
         """In place of the scenario's."""
-        from ..study.planes import COARSE
+        from ..study.changes import COARSE
 
         return COARSE if self.mesh is _Mesh.COARSE else None
 

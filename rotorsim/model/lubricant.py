@@ -16,6 +16,8 @@ from .entries import Example, Leaf, Number, Quantity, Temperature, check
 ZERO_CELSIUS = 273.15
 _LEAST_KINEMATIC = 0.35e-6
 """Below this [m2/s] the Walther law means nothing."""
+SENSIBLE_VISCOSITY = (1e-7, 1e5)
+"""Limits beyond which a law's viscosity [Pa s] shows that the law or a temperature is wrong."""
 _TYPICAL = {"density": 860.0, "specific_heat": 2000.0, "thermal_conductivity": 0.13}
 """Of a mineral oil, SI: used where they do not enter (an isothermal film's forces)."""
 _DynamicViscosity = Annotated[float, Quantity("dynamic viscosity")]

@@ -443,7 +443,7 @@ class _Unread(Leaf):
     """A value whose meaning depends on the parameter that it belongs to."""
 
     def read(self, value: object) -> Any:
-        """Return the it as it stands."""
+        """Return the value as it stands."""
         return tuple(value) if isinstance(value, list) else value
 
 
