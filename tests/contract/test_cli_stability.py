@@ -147,6 +147,7 @@ def test_damping_called_c_gives_the_same_verdict(here):
     assert said[0]["threshold_speeds"] != said[2]["threshold_speeds"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "rotor", [("--rotor", "r.npz"), ("--mass", "200 kg", "--shaft-stiffness", "20 MN/m")]
 )

@@ -174,6 +174,7 @@ def test_linear_coefficients_belong_to_the_loaded_position():
         _orbit_problem(Scenario.from_text(text.replace("static_load = false\n", "")))
 
 
+@pytest.mark.slow
 def test_an_eccentricity_ratio_stands_for_the_load_that_gives_it():
     text = BASE.replace('load = "800 N"', "eccentricity_ratio = 0.4")
     for inception, force in (("free", FilmMapForce), ("max_film", SolvedFilmForce)):
@@ -319,6 +320,7 @@ def test_an_actuator_goes_with_a_film_that_is_solved_at_every_step():
     assert np.abs(held.actuator_force).max() == pytest.approx(5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", ["lqr", "pd"])
 def test_an_actuator_brings_to_rest_what_whirls_without_it(design):
     run = f"{START}revolutions = 60\n"
