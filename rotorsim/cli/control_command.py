@@ -135,7 +135,8 @@ def control(
     study = study_control(case, at, carried, settings, disturbance=start, revolutions=revolutions)
     document = _study_document(study)
     if folder is not None:
-        from ..show.job import control_figures, save_figures
+        from ..show.job import save_figures
+        from ..show.study_figures import control_figures
 
         document["files"] = save_figures(control_figures(study, loaded.title), folder)
     output.results(document, lambda: _study_tables(study))
@@ -178,7 +179,8 @@ def _machine_control(
     study = study_machine_control(loaded, result.machine, settings, **run)
     document = _machine_document(study, result.thermal_model)
     if folder is not None:
-        from ..show.job import machine_control_figures, save_figures
+        from ..show.job import save_figures
+        from ..show.study_figures import machine_control_figures
 
         document["files"] = save_figures(machine_control_figures(study, loaded.title), folder)
     output.results(document, lambda: _machine_tables(study))

@@ -23,7 +23,7 @@ from ..machine.peaks import node_at
 from ..machine.statics import Law, StaticEquilibrium, static_equilibrium
 from ..machine.support import Support, TableSupport, Turned, cross_stiffness
 from ..model import Case, LoadTarget, ThermalModel
-from ..model.machine import SupportEntry
+from ..model.supports import SupportEntry
 from ..rotor import Rotor
 from .changes import changed
 from .machine import MachineResult

@@ -164,12 +164,12 @@ def test_the_table_of_a_rotor_that_is_not_rigid_speaks_of_its_own_verdict(here, 
 
 
 def test_a_wrong_rotor_is_refused_before_films_are_solved(here, monkeypatch):
-    from rotorsim.cli import stability_command
+    from rotorsim.cli import stability_inputs
 
     def solved(*_):
         raise AssertionError("films were solved")
 
-    monkeypatch.setattr(stability_command, "computed_table", solved)
+    monkeypatch.setattr(stability_inputs, "computed_table", solved)
     np.savez("r.npz", **shaft_arrays(Damping=np.eye(36)))
     done = here("stability", "small.toml", "--rotor", "r.npz", "--mass", "900 kg")
     refuse(done, ["--rotor", "--mass", "'r.npz'"])

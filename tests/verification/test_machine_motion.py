@@ -11,7 +11,7 @@ from machine_motions import FILMS, SPRINGS, two_discs
 
 import rotorsim as rs
 from rotorsim.errors import InputError
-from rotorsim.model.machine import Damper, EndSeal, FloatingRing
+from rotorsim.model.supports import Damper, EndSeal, FloatingRing
 from rotorsim.orbit import orbit_ellipse
 from rotorsim.orbit.forces import ShortBearingForce, StopForce
 from rotorsim.orbit.motion import (
