@@ -187,6 +187,7 @@ def test_an_eccentricity_ratio_stands_for_the_load_that_gives_it():
         assert orbit.eccentricity_ratio == pytest.approx(0.4, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_the_harmonic_load_is_recognised_as_what_the_orbit_follows():
     lines = (
         "revolutions = 120\nunbalance = false\n"
@@ -201,6 +202,7 @@ def test_the_harmonic_load_is_recognised_as_what_the_orbit_follows():
     assert said["growth_rate"] is None
 
 
+@pytest.mark.slow
 def test_description_of_an_unbalanced_orbit():
     orbit = simulate_orbit(constant("revolutions = 80"))
     said = describe_orbit(orbit)
@@ -234,6 +236,7 @@ def test_oil_whip_locks_to_the_natural_frequency():
     assert ratio * end.speed[0] == pytest.approx(400.0, rel=0.06)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_shipped_orbits_say_what_is_seen_and_run(path):
     text = path.read_text(encoding="utf-8")
@@ -336,6 +339,7 @@ def test_an_actuator_brings_to_rest_what_whirls_without_it(design):
     assert "actuator limited to 100 N per axis; largest actuator force" in held.message
 
 
+@pytest.mark.slow
 def test_the_actuator_never_gives_more_than_its_limit():
     held = simulate_orbit(actuated('force_limit = "5 N"', f"{START}revolutions = 5\n"))
     assert held.message.endswith("largest actuator force 5 N")
