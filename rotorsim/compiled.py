@@ -21,6 +21,7 @@ from llvmlite import ir
 from numba import types
 from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
 from numba.core.ccallback import CFunc
+from numba.core.runtime.nrt import rtsys
 from numba.extending import intrinsic
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -125,7 +126,10 @@ class _SourceCache(FunctionCache):
         """Return the stored machine code; None where there is none, or a damaged one."""
         self._stamp()
         try:
-            return super().load_overload(sig, target_context)
+            # Numba's own method loads all registries of the compiler first, a quarter of a second:
+            # what is stored needs the runtime alone. Compilation loads them itself.
+            rtsys.initialize(target_context)
+            return self._load_overload(sig, target_context)
         except Exception:  # unpickling what is damaged may raise anything
             return None
 

@@ -214,7 +214,7 @@ SUFFIXES = {
 
 
 def sentence(kind: FileKind | None) -> str:
-    """Say what a file of that kind is and which command takes it; empty for None.
+    """Return what a file of that kind is and which command takes it; empty for None.
 
     Examples
     --------

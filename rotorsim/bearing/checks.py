@@ -16,7 +16,7 @@ from ..model import (
     ShaftModel,
     ThermalModel,
 )
-from ..model.lubricant import ZERO_CELSIUS
+from ..units import ZERO_CELSIUS
 
 if TYPE_CHECKING:
     from ..film.heat import HeatBalance

@@ -30,7 +30,7 @@ _HERE = "here K = -dF/dx and C = -dF/dv, F the film's force on the journal"
 
 
 def doubts(table: CoefficientTable) -> list[str]:
-    """Say, a sentence each, what makes the coefficients look as if stated otherwise."""
+    """Return, a sentence each, what makes the coefficients look as if stated otherwise."""
     usable = table.converged
     if not usable.any():
         return []

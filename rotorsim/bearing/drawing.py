@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from ..model import Bearing, Case, FlowRegime, Groove, LoadTarget, ThermalModel
 from ..model.bearing import angle_between
-from ..model.lubricant import ZERO_CELSIUS
+from ..units import ZERO_CELSIUS
 from .checks import CRITICAL_TAYLOR, TURBULENT_REYNOLDS, DerivedNumbers, derived_numbers
 
 STANDARD_GRAVITY = 9.80665

@@ -406,7 +406,7 @@ def frequency_coefficients(
 def stored_oil_warnings(
     dynamics: FilmDynamics, stiffness: Array, damping: Array, ratio: float | None
 ) -> tuple[str, ...]:
-    """Say at which frequency K and C hold, where the stored oil changes them noticeably."""
+    """Return at which frequency K and C hold, where stored oil changes them noticeably."""
     if ratio is None or dynamics.stored_oil is None:
         return ()
     with_oil = stiffness + 1j * ratio * dynamics.speed * damping

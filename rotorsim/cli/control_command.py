@@ -135,7 +135,8 @@ def control(
     study = study_control(case, at, carried, settings, disturbance=start, revolutions=revolutions)
     document = _study_document(study)
     if folder is not None:
-        from ..show.job import control_figures, save_figures
+        from ..show.job import save_figures
+        from ..show.study_figures import control_figures
 
         document["files"] = save_figures(control_figures(study, loaded.title), folder)
     output.results(document, lambda: _study_tables(study))
@@ -178,7 +179,8 @@ def _machine_control(
     study = study_machine_control(loaded, result.machine, settings, **run)
     document = _machine_document(study, result.thermal_model)
     if folder is not None:
-        from ..show.job import machine_control_figures, save_figures
+        from ..show.job import save_figures
+        from ..show.study_figures import machine_control_figures
 
         document["files"] = save_figures(machine_control_figures(study, loaded.title), folder)
     output.results(document, lambda: _machine_tables(study))
@@ -280,7 +282,7 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
 
 
 def _study_document(study: ControlStudy) -> dict[str, Any]:
-    """A control study for JSON."""
+    """Return a control study for JSON."""
 
     def motion(orbit: Any, values: Any) -> dict[str, Any]:
         return {
@@ -314,7 +316,7 @@ def _study_document(study: ControlStudy) -> dict[str, Any]:
 
 
 def _study_tables(study: ControlStudy) -> list[Any]:
-    """A control study for people."""
+    """Return the tables of a control study."""
     from .tables import grid
 
     said = _study_document(study)
@@ -341,7 +343,7 @@ def _study_tables(study: ControlStudy) -> list[Any]:
 
 
 def _force_words(study: ControlStudy) -> str:
-    """The actuator's force in the run in time, and what it had to do."""
+    """Describe the actuator's force in the run in time, and what it had to do."""
     limit = study.feedback.max_force
     of = "unlimited" if limit == float("inf") else f"of {number(limit)} N"
     said = f"largest actuator force {number(study.largest_force)} N, {of}"

@@ -237,7 +237,7 @@ def _table_at(path: Path) -> CoefficientTable | None:
 
 
 def _report_points(output: Output, points: Sequence[OperatingPoint]) -> int:
-    """Say what did not converge and what left the model's range; the exit code."""
+    """Report what did not converge and what left the model's range; return the exit code."""
     from ..bearing.description import grouped_warnings, point_title
 
     bad = [point for point in points if not point.converged]

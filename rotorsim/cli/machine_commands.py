@@ -122,9 +122,10 @@ def _spot_part(spots: HotSpotStudy | None) -> dict[str, Any]:
 def run_machine(output: Output, path: Path, folder: Path, workers: int | None) -> int:
     """Do the whole job on a machine: films, modes, response, checks, maps, figures, recording."""
     from ..bearing.netcdf import write
-    from ..show.job import plane_figures, save_figures
+    from ..show.job import save_figures
     from ..show.machine_job import write_machine_figures
     from ..show.recording.machine import write_machine_recording
+    from ..show.study_figures import plane_figures
     from ..study.lateral import lateral_document, lateral_study, response_document
     from ..study.machine import stability_document, supports_document
     from ..study.machine_map import map_of_entry
@@ -335,7 +336,7 @@ def analysed(
 def _closing(
     output: Output, results: dict[str, MachineResult], spots: HotSpotStudy | None = None
 ) -> int:
-    """Say the verdict and what did not converge; return the exit code."""
+    """Print the verdict and what did not converge; return the exit code."""
     failures = tables.failure_lines(results)
     _say_free(output, results[next(reversed(results))].description)
     for text in failures:

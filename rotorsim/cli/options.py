@@ -318,7 +318,7 @@ def cluster(address: str | None, output: Output) -> Iterator[Executor | None]:
 
 @contextmanager
 def _workers_awaited(client: Any, address: str, output: Output) -> Iterator[None]:
-    """Say it when the scheduler has no worker for some time; one may still come."""
+    """Print a note when the scheduler has no worker for some time; one may still come."""
     ended = threading.Event()
 
     def look() -> None:

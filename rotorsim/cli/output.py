@@ -84,16 +84,16 @@ class Output:
                 print(strict_json(value))
 
     def note(self, text: str) -> None:
-        """Say what goes on, on stderr."""
+        """Print what goes on, on stderr."""
         if not self.quiet:
             self.errors.print(text)
 
     def warn(self, text: str) -> None:
-        """Say what the user should know, on stderr, quiet or not."""
+        """Print what the user should know, on stderr, quiet or not."""
         self.errors.print(f"warning: {text}", style="yellow")
 
     def complain(self, text: str) -> None:
-        """Say what is wrong, on stderr."""
+        """Print what is wrong, on stderr."""
         self.errors.print(f"error: {text}", style="bold red")
 
     @functools.cached_property

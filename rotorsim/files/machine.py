@@ -27,9 +27,7 @@ from ..model.machine import (
     MachineTolerances,
     MapEntry,
     Probe,
-    SealEntry,
     StaticForce,
-    SupportEntry,
     UnbalanceEntry,
     distinct_names,
 )
@@ -49,6 +47,7 @@ from ..model.shaft import (
     Poisson,
     Section,
 )
+from ..model.supports import SealEntry, SupportEntry
 from ..rotor import Beam, Rotor, beam_rotor, with_unbalance
 from ..rotor.beam import buckling_load
 from ..shipped import shipped_machines

@@ -67,7 +67,7 @@ _SHORT = {"clearance": "radial_clearance", "temperature": "supply_temperature"}
 class Variant:
     """A machine with some parameters changed.
 
-    films : Changes of each support's film, see `rotorsim.study.planes.changed`; ``applied_load``
+    films : Changes of each support's film, see `rotorsim.study.changes.changed`; ``applied_load``
         replaces the magnitude of its static load.
     cross_stiffness : Destabilising stiffness [N/m] by place [m].
     """

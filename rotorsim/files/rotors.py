@@ -121,7 +121,7 @@ _MATLAB_HEADER = 128
 
 
 class _Unsuited(Exception):
-    """Why a file is not read, in words for its user."""
+    """Reason for which a file is not read, in words for its user."""
 
 
 def _read_arrays(source: Path) -> dict[str, NDArray[Any]]:

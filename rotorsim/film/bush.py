@@ -99,7 +99,7 @@ class BushOperator:
 
     @cached_property
     def _body_weights(self) -> tuple[tuple[Array, Array], tuple[float, float]]:
-        """What each cell of the bore contributes to `body`, (n, m) each, and what rests."""
+        """Return the share of each cell of the bore in `body`, (n, m) each, and of what rests."""
         r, (dtheta, dy) = self.radii, self.lengths
         around, along = dtheta @ self.around / dtheta.sum(), dy @ self.along / dy.sum()
         arm = r - r.mean()

@@ -43,7 +43,7 @@ _LARGEST_STEP = 0.5
 
 @dataclass
 class ElasticBore:
-    """How a bore gives way on one mesh.
+    """Compliance of a bore on one mesh.
 
     compliance : callable. From the pressure (n, m) [Pa] to the deflection, outwards (n, m) [m].
     last : (n, m) array. The deflection found last, where the next search begins.
@@ -91,7 +91,10 @@ class ElasticBore:
     def _agreed(
         self, state: FilmState, film: Callable[[Array], FilmState], share: float
     ) -> tuple[FilmState, float]:
-        """Newton's method with a part of the compliance; what is missing over the thinnest film."""
+        """Solve by Newton's method with a part of the compliance.
+
+        Returns the state, and its residual over the thinnest film.
+        """
         tolerance = _TOLERANCE if share == 1.0 else _ACCEPTED
         missing, off = self._missing(state, share)
         for _ in range(_MAX_STEPS):
@@ -105,9 +108,9 @@ class ElasticBore:
         return state, off
 
     def _missing(self, state: FilmState, share: float) -> tuple[Array, float]:
-        """Return deflection that the pressure asks for beyond the state's own.
+        """Return the deflection that the pressure asks for beyond the state's own.
 
-        Over the thinnest film.
+        Returns also its largest value over the thinnest film.
         """
         missing = share * self.compliance(state.solution.pressure) - _deflection(state)
         return missing, float(np.abs(missing).max()) / state.min_thickness

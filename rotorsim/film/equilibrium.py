@@ -1,4 +1,4 @@
-"""Where the journal floats: position under a load, or attitude at an eccentricity ratio.
+"""Equilibrium of the journal: position under a load, or attitude at an eccentricity ratio.
 
 The linearised film is the Jacobian of the force, so position and temperature are found in one loop
 (`solve_thermal_film`'s `move`). A plain bearing needs only the eccentricity ratio, sought in
@@ -63,7 +63,7 @@ class PlainSearch:
         return np.array([size, 0.0])
 
     def grown(self, problem: FilmProblem) -> None:
-        """Go on in the clearance of `problem`."""
+        """Take over the clearance of `problem`."""
         self.clearance = problem.bearing.radial_clearance
 
     def _at(self, xi: float) -> Array:
@@ -112,7 +112,7 @@ class LoadSearch:
         return new if scale == 1.0 else old + scale * step
 
     def grown(self, problem: FilmProblem) -> None:
-        """Go on in the clearance of `problem`."""
+        """Take over the clearance of `problem`."""
         self.clearance, self.geometry = problem.bearing.radial_clearance, problem.geometry
 
 
@@ -134,7 +134,7 @@ class FixedRatio:
         return np.array([self.eccentricity_ratio * self.clearance, 0.0])
 
     def grown(self, problem: FilmProblem) -> None:
-        """Go on in the clearance of `problem`."""
+        """Take over the clearance of `problem`."""
         self.clearance = problem.bearing.radial_clearance
 
 
@@ -203,7 +203,7 @@ class AttitudeSearch:
         return size * np.array([math.cos(angle), math.sin(angle)])
 
     def grown(self, problem: FilmProblem) -> None:
-        """Go on in the clearance of `problem`."""
+        """Take over the clearance of `problem`."""
         self.clearance = problem.bearing.radial_clearance
 
 

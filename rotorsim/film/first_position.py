@@ -1,4 +1,4 @@
-"""Where to look for an equilibrium that Newton's method did not find, and whether there is one.
+"""Search for an equilibrium that Newton's method did not find, or for a proof that none exists.
 
 A film may carry nothing over part of the clearance (a mass-conserving film behind a groove at
 ambient pressure runs dry wherever the bearing opens from the groove's edge on), and its force may

@@ -76,7 +76,7 @@ class TurbulentFlow:
     diffusion: float
     bulk: tuple[tuple[float, float, float, float], ...] = ()
     always: bool = False
-    """Whether to fill all shares even where the film is laminar throughout."""
+    """True to fill all shares even where the film is laminar throughout."""
     _stresses: dict[tuple[int, int, int], Array] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )

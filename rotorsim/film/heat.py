@@ -1,4 +1,4 @@
-"""What enters and leaves the film: temperatures of the inlets, and the balance of the heat."""
+"""Heat that enters and leaves the film: temperatures of the inlets, and the balance."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Heat:
 
 @dataclass(frozen=True)
 class HeatBalance:
-    """Where the power that the film turns into heat goes [W], of the whole bearing."""
+    """Heat flows that carry off the film's dissipation [W], of the whole bearing."""
 
     dissipation: float
     enthalpy_out: float
@@ -234,7 +234,7 @@ def _mixed(
 
 @dataclass(frozen=True)
 class _Pool:
-    """What meets in each groove: flows [m3/s] and temperatures [K], (g,) arrays."""
+    """Oil that meets in each groove: flows [m3/s] and temperatures [K], (g,) arrays."""
 
     taken: Array
     given: Array

@@ -88,7 +88,7 @@ class FilmMesh:
 
     @property
     def multiplicity(self) -> float:
-        """How many like parts the mesh stands for: 2 for a half film."""
+        """Return the number of like parts the mesh stands for: 2 for a half film."""
         return 2.0 if self.half else 1.0
 
 

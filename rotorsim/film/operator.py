@@ -103,7 +103,7 @@ class StepFaces:
 
 @dataclass(frozen=True)
 class FaceTopology:
-    """What of the operator depends on the mesh and the supply only."""
+    """Part of the operator that depends on the mesh and the supply only."""
 
     interior: Booleans
     fixed_pressure: Array

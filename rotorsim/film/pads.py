@@ -74,10 +74,10 @@ class PadSearch:
         self.target = target
         self.unreachable: bool = False
         self.held = False
-        """Whether the journal stays where it is and only the pads move."""
+        """True where the journal stays where it is and only the pads move."""
         self.unloaded: frozenset[int] = frozenset()
         self._returns: Counter[int] = Counter()
-        """How often each pad has been unloaded before; from zero its load rises infinitely steep.
+        """Times each pad has been unloaded before; from zero its load rises infinitely steep.
         """
         self._revived: frozenset[int] = frozenset()
         self._lost: frozenset[int] = frozenset()
@@ -90,7 +90,7 @@ class PadSearch:
 
     @cached_property
     def _weights(self) -> Array:
-        """What turns a generalised force into one on the journal [1 or 1/m]."""
+        """Return the factors from generalised forces to ones on the journal [1 or 1/m]."""
         displacements = self.whole.geometry.displacements
         return displacements.scales / self.whole.bearing.radial_clearance
 
@@ -174,7 +174,7 @@ class PadSearch:
         return q
 
     def grown(self, problem: FilmProblem) -> None:
-        """Go on in the clearances of `problem`."""
+        """Take over the clearances of `problem`."""
         self.problem = problem
         self.whole = hot_problem(self.whole, problem.bearing)
         self.__dict__.pop("frames", None)
@@ -397,17 +397,17 @@ class PadSearch:
 
     @property
     def _fed(self) -> bool:
-        """Whether grooves press on the pads' edges, so that no pad need be without pressure."""
+        """Return whether grooves press on the pads' edges, so that each pad may have pressure."""
         return any(groove.supply_pressure > 0.0 for groove in self.whole.bearing.grooves)
 
     @property
     def _skewed(self) -> bool:
-        """Whether E_n and E_t, at the mid-plane, do not tell where a pad's root lies."""
+        """Return whether E_n and E_t, at the mid-plane, do not tell where a pad's root lies."""
         return self._fed or self._starves or not self.whole.bearing.is_symmetric
 
     @property
     def _starves(self) -> bool:
-        """Whether a pad's film may begin behind its leading edge."""
+        """Return whether a pad's film may begin behind its leading edge."""
         bearing = self.whole.bearing
         return bearing.supply_flow is not None and self.whole.rupture.conserves_mass
 
@@ -525,7 +525,7 @@ class PadSearch:
 
     @property
     def supports_load(self) -> bool:
-        """Whether forces along the pivots of loaded pads can add up to what they must carry.
+        """Return whether forces along the pivots of loaded pads can add up to what they must carry.
 
         That is the load less what the pressure in the openings carries.
         """
@@ -564,7 +564,7 @@ class _Root:
     def __post_init__(self) -> None:
         inside = self.low < self.guess < self.high
         self.next = self.guess if inside else self.low + 0.3 * (self.high - self.low)
-        """Where to look next."""
+        """Next position to look at."""
 
     def _choose(self) -> float:
         width = self.high - self.low

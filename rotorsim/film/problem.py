@@ -66,12 +66,12 @@ class FilmProblem:
 
     @property
     def is_thermal(self) -> bool:
-        """Whether the energy equation is solved."""
+        """Return whether the energy equation is solved."""
         return self.thermal.model is ThermalModel.THD
 
     @property
     def anchored(self) -> bool:
-        """Whether a ruptured line stays ruptured up to the next inception."""
+        """Return whether a ruptured line stays ruptured up to the next inception."""
         return self.is_thermal or self.settings.inception is Inception.MAX_FILM
 
 

@@ -232,7 +232,7 @@ _NOT_FOUND = (
 
 
 def _jump(case: Case, position: _Position) -> str:
-    """Say where the force jumps across the load, and what to try."""
+    """Describe where the force jumps across the load, and what to try."""
     eps = math.hypot(*position) / case.bearing.radial_clearance
     advice = "another load or a finer mesh"
     if case.film.inception is Inception.MAX_FILM:
@@ -260,7 +260,7 @@ def _nowhere(failed: FilmSolution, case: Case) -> str:
 
 
 def _no_position(failed: FilmSolution, case: Case) -> str:
-    """Say why no position carries the load, and what to try."""
+    """Describe why no position carries the load, and what to try."""
     thinnest = CLEARANCE_KEPT * case.bearing.radial_clearance
     carried = float(np.hypot(*failed.state.force))
     return (
@@ -524,7 +524,7 @@ def _iterate_isothermal(
 
 
 def _starved(bearing: Bearing) -> str:
-    """Say that no film forms, and what to try."""
+    """Describe that no film forms, and what to try."""
     advice = "A mass-conserving film needs a supply: a groove"
     if bearing.grooves:
         advice = (

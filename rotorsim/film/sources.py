@@ -1,4 +1,4 @@
-"""What displacements of the walls add to the continuity of each cell of a film."""
+"""Sources that displacements of the walls add to the continuity of each cell of a film."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ class SolidState:
 
 @dataclass(frozen=True)
 class HeatStorage:
-    """What the solids of a bearing store."""
+    """Heat that the solids of a bearing store."""
 
     shaft: ShaftMaterial
     bush: SolidMaterial

@@ -46,7 +46,7 @@ from .walls import FilmContact, Walls, choose_walls
 _TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
 _SPREAD_WEIGHT = 0.1
-"""How a change of temperature relative to the field's spread counts, as one of log viscosity."""
+"""Weight of a temperature change relative to the field's spread, as one of log viscosity."""
 _SMALLEST_SPREAD = 1e-2
 """[K]; temperatures closer together than this need not be known relative to their spread."""
 BALANCE_TOLERANCE = 1e-3
@@ -54,7 +54,7 @@ BALANCE_TOLERANCE = 1e-3
 BALANCE_ROUNDING = 1e-9
 """Part of all heat that enters the film which is lost in rounding."""
 _HEAT_WEIGHT = 0.01
-"""How heat on which film and walls disagree counts, relative to the dissipation."""
+"""Weight of heat on which film and walls disagree, relative to the dissipation."""
 _MAX_ITERATIONS = 150
 _FAR_RESIDUAL = 0.1
 """Change of log viscosity above which the cells' states are guessed anew."""
@@ -121,7 +121,7 @@ class _Move(Protocol):
         ...
 
     def grown(self, problem: FilmProblem, /) -> None:
-        """Go on in the clearance of `problem`."""
+        """Take over the clearance of `problem`."""
         ...
 
 
@@ -233,7 +233,7 @@ def _grown(
 
 @dataclass(frozen=True)
 class _Step:
-    """What one temperature field leads to: the film, and the next temperatures `mapped`."""
+    """Result of one temperature field: the film, and the next temperatures `mapped`."""
 
     state: FilmState
     viscosity: Array
@@ -246,7 +246,7 @@ class _Step:
 
 @dataclass
 class _Progress:
-    """How the iteration goes, and what it does about cells that find no state.
+    """Progress of the iteration, and its treatment of cells that find no state.
 
     A cell at the edge of the full film may have no state that agrees with its own heat: full, the
     film warms and it ruptures; ruptured, it cools and fills. The iteration then circles around a
@@ -257,7 +257,7 @@ class _Progress:
     kept: Booleans | None
     """Full cells, while their states are kept."""
     given: bool
-    """Whether they are kept throughout, as the caller asked."""
+    """True where they are kept throughout, as the caller asked."""
     guess: Booleans | None = None
     """First guess of the full cells."""
     history: list[float] = field(default_factory=list)
@@ -287,7 +287,7 @@ class _Progress:
         return False
 
     def broken_rupture(self, step: _Step) -> str:
-        """Say how many cells break the rupture condition if too many; their states are released."""
+        """Describe how many cells break the rupture condition if too many; release their states."""
         broken, cells = step.state.solution.violations, step.state.solution.full.size
         if self.given or broken <= _VIOLATIONS_ALLOWED * cells:
             return ""
@@ -374,7 +374,7 @@ def _balance(problem: FilmProblem, walls: Walls, heat: Heat, step: _Step) -> Hea
 
 
 def _unsettled(residual: float, tolerance: float, off: float, force_tolerance: float) -> str:
-    """Say which of temperature and force is farther from settled; empty if both have."""
+    """Describe which of temperature and force is farther from settled; empty if both have."""
     if residual < tolerance and off < force_tolerance:
         return ""
     if residual / tolerance < off / force_tolerance:
@@ -383,7 +383,7 @@ def _unsettled(residual: float, tolerance: float, off: float, force_tolerance: f
 
 
 def _unbalanced(balance: HeatBalance) -> str:
-    """Say how much heat is unaccounted for; empty if that is within the tolerance."""
+    """Describe how much heat is unaccounted for; empty if that is within the tolerance."""
     allowed = BALANCE_TOLERANCE * balance.dissipation + BALANCE_ROUNDING * balance.turnover
     if abs(balance.remainder) <= allowed:
         return ""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Annotated, NamedTuple, Protocol, runtime_checkable
 
@@ -11,11 +12,13 @@ from numpy.typing import ArrayLike
 
 from ..arrays import Array
 from ..errors import InputError
+from ..units import ZERO_CELSIUS
 from .entries import Example, Leaf, Number, Quantity, Temperature, check
 
-ZERO_CELSIUS = 273.15
 _LEAST_KINEMATIC = 0.35e-6
 """Below this [m2/s] the Walther law means nothing."""
+SENSIBLE_VISCOSITY = (1e-7, 1e5)
+"""Limits beyond which a law's viscosity [Pa s] shows that the law or a temperature is wrong."""
 _TYPICAL = {"density": 860.0, "specific_heat": 2000.0, "thermal_conductivity": 0.13}
 """Of a mineral oil, SI: used where they do not enter (an isothermal film's forces)."""
 _DynamicViscosity = Annotated[float, Quantity("dynamic viscosity")]
@@ -229,9 +232,11 @@ class _ViscosityEntry(Leaf):
 
     def read(self, value: object) -> Viscosity:
         try:
-            return Viscosity(Quantity("kinematic viscosity", "32 cSt").read(value), True)
-        except InputError:
             return Viscosity(Quantity("dynamic viscosity", "0.0277 Pa*s").read(value))
+        except InputError as refusal:
+            with suppress(InputError):
+                return Viscosity(Quantity("kinematic viscosity", "32 cSt").read(value), True)
+            raise refusal from None
 
 
 _Viscosity = Annotated[Viscosity, _ViscosityEntry()]

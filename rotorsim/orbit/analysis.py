@@ -180,7 +180,7 @@ def _steady_from(orbit: Orbit, amplitude: float, known: int) -> int:
 
 @dataclass(frozen=True)
 class _WhirlRange:
-    """Where a run through the speeds whirls below the shaft's frequency.
+    """Range of a run through the speeds in which it whirls below the shaft's frequency.
 
     first_speed, last_speed : Of the first and the last block of revolutions that whirls [rad/s].
     strongest_speed : Where the whirl is largest [rad/s].
@@ -197,7 +197,7 @@ class _WhirlRange:
 
 @dataclass(frozen=True)
 class OrbitAnalysis:
-    """What an orbit shows.
+    """Measures of an orbit: size, frequencies, direction, clearance.
 
     recognition : None where the speed varies.
     growth : Of small motions at the start; None where there are too few of them.

@@ -1,4 +1,4 @@
-"""How close the journal is to the bush, for any bore."""
+"""Distance of the journal to the bush, for any bore."""
 
 from __future__ import annotations
 

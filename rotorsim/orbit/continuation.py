@@ -66,7 +66,7 @@ class Branch:
 
     @property
     def supercritical(self) -> bool | None:
-        """Whether small cycles exist above the threshold, and are stable; None without any."""
+        """Return whether stable small cycles exist above the threshold; None without any cycles."""
         if self.threshold is None or self.speed.size < 2:
             return None
         return bool(self.speed[1] > self.threshold)

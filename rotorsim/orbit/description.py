@@ -13,7 +13,7 @@ from .orbit import Orbit
 from .spectrum import Ellipse
 
 _SMALL = QUANTITIES["radial_clearance"]
-"""How small lengths are shown."""
+"""Unit in which small lengths are shown."""
 
 
 def describe_orbit(orbit: Orbit) -> dict[str, Any]:
@@ -156,7 +156,7 @@ def ellipse_text(ellipse: Mapping[str, Any] | None) -> str:
 
 
 def whirl_range_text(found: Mapping[str, Any]) -> str:
-    """Say from which speed to which a run through the speeds whirls, and where most."""
+    """Describe the speeds between which a run through the speeds whirls, and where most."""
     first, last, most = (
         QUANTITIES["speed"].text(found[key])
         for key in ("first_speed", "last_speed", "strongest_speed")

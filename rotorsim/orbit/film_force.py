@@ -188,7 +188,7 @@ class SolvedFilmForce:
 
     @cached_property
     def scales(self) -> Array:
-        """What changes the film by about the clearance, of each displacement."""
+        """Return the size of each displacement that changes the film by about the clearance."""
         return self.problem.geometry.displacements.scales
 
     @cached_property

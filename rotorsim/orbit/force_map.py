@@ -59,12 +59,12 @@ class ForceMap:
 
     @property
     def max_eccentricity_ratio(self) -> float:
-        """Where the solved grid ends; from there the force grows as (1 - eps^2)^(-3/2)."""
+        """Return the end of the solved grid; from there the force grows as (1 - eps^2)^(-3/2)."""
         return math.tanh(self.last)
 
     @property
     def numbers(self) -> Array:
-        """What the compiled kernel needs besides the coefficients, (4,)."""
+        """Return the numbers the compiled kernel needs besides the coefficients, (4,)."""
         return np.array([self.first, self.step, self.last, self.central])
 
     def impedance(self, eccentricity_ratio: float, angle: float) -> tuple[float, float]:

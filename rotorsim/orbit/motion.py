@@ -27,9 +27,9 @@ CHUNK_REVOLUTIONS = 32
 """Of the shaft in one piece of a run."""
 _TOLERANCE = 1e-5
 _SOLVED_TOLERANCE, _SOLVED_TOLERANCE_SCIPY = 1e-3, 1e-4
-"""Where a film is solved at each step, in compiled code and by SciPy. The film's cells change from
-full to ruptured one by one, which no step sees to more digits; the compiled method's own error is
-a tenth of its estimate."""
+"""Tolerances of steps that solve a film, in compiled code and by SciPy. The film's cells change
+from full to ruptured one by one, which no step sees to more digits; the compiled method's own
+error is a tenth of its estimate."""
 _STATIC_STEPS = 200
 
 
@@ -460,7 +460,7 @@ def _edges(problem: MotionProblem, schedule: SpeedSchedule, revolutions: int) ->
 
 
 def _touched(problem: MotionProblem, t: float, q: Array) -> tuple[str, OrbitEvent]:
-    """Say where the surfaces touch, from time and displacements."""
+    """Describe where the surfaces touch, from time and displacements."""
     films = [one for one in problem.system.links if one.film]
     places = [one.motion(q[None], 0.0 * q[None], np.zeros(1))[0, :2] for one in films]
     left = [

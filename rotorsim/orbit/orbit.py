@@ -12,7 +12,7 @@ from ..arrays import Array
 
 
 class OrbitStatus(StrEnum):
-    """How a run ended, and what its last part is."""
+    """End of a run, and kind of motion in its last part."""
 
     RUNNING = "running"
     """A piece of a run that goes on."""
@@ -146,12 +146,12 @@ class Orbit:
 
     @property
     def actuated(self) -> bool:
-        """Whether an actuator acts on the journal."""
+        """Return whether an actuator acts on the journal."""
         return bool(np.any(self.actuator_force))
 
     @property
     def constant_speed(self) -> bool:
-        """Whether the shaft turns at one speed throughout."""
+        """Return whether the shaft turns at one speed throughout."""
         speed = self.speed
         return bool(speed.size == 0 or np.ptp(speed) <= 1e-9 * abs(speed[0]))
 

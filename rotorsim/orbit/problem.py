@@ -79,7 +79,7 @@ class SpeedSchedule:
 
     @property
     def is_constant(self) -> bool:
-        """Whether the speed never changes."""
+        """Return whether the speed never changes."""
         return len(set(self.speeds)) == 1
 
     @property

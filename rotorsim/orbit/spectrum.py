@@ -1,4 +1,4 @@
-"""What turns in an orbit, how fast and which way.
+"""Components of an orbit: frequencies, amplitudes and directions of whirl.
 
 Samples are equally spaced in shaft angle, so a transform gives orders (multiples of the shaft's
 frequency) at constant and at changing speed alike. Forward and backward whirl are the positive
@@ -89,7 +89,7 @@ class Ellipse:
 
     @property
     def is_forward(self) -> bool:
-        """Whether it turns with the shaft."""
+        """Return whether it turns with the shaft."""
         return abs(self.forward) >= abs(self.backward)
 
 

@@ -79,7 +79,7 @@ class Link:
 
     @cached_property
     def compilable(self) -> bool:
-        """Whether the force has a compiled form."""
+        """Return whether the force has a compiled form."""
         return isinstance(self.force, CompilableForce)
 
     @cached_property
@@ -194,12 +194,12 @@ class MotionSystem:
 
     @cached_property
     def linear(self) -> bool:
-        """Whether all forces are linear in the motion."""
+        """Return whether all forces are linear in the motion."""
         return not self.links and self.limited is None
 
     @cached_property
     def compilable(self) -> bool:
-        """Whether all links have a compiled form."""
+        """Return whether all links have a compiled form."""
         return all(link.compilable for link in self.links)
 
     def plain(self, lowest: float, highest: float) -> Plain:

@@ -226,7 +226,7 @@ class Rotor:
         return np.asarray(np.square(np.asarray(speed, dtype=float))[..., None] * force)
 
     def doubts(self) -> list[str]:
-        """Say what makes given matrices look misordered, a sentence each.
+        """Return what makes given matrices look misordered, a sentence each.
 
         Without supports a rotor moves freely along x and along y: K times a translation vanishes.
         """

@@ -1,1 +1,1 @@
-"""What shows results: figures, recordings for the viewer, reports."""
+"""Figures, recordings for the viewer and reports of results."""

@@ -347,7 +347,7 @@ class _Page:
         self.show(self.state.text.partition(" on ")[2])
 
     def save(self) -> None:
-        """Hand the scenario over as a file."""
+        """Offer the scenario as a file for download."""
         from nicegui import ui
 
         try:

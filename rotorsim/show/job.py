@@ -1,24 +1,23 @@
-"""What the main job computed, shown: figures, recordings, and the summary in words."""
+"""Figures and recordings of the main job and of orbits."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..arrays import Array
 from ..orbit import Orbit
 from ..orbit.analysis import speed_cascade
-from ..orbit.description import describe_orbit, run_names, run_title, whirl_range_text
+from ..orbit.description import run_names, run_title
 from ..rows import QUANTITIES, RPM
-from ..study.main_job import Announce, Attempts, Results, compute, summary
+from ..study.main_job import Announce, Attempts, Results, compute
 from ..study.orbits import film_at_rest, orbit_settings
-from ..study.planes import Plane, held_text
-from ..study.stability import late_whirl
 from ..study.transient import Transient, transient_frames
+from .run_notes import markdown_summary, orbit_notes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -27,10 +26,6 @@ if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
     from ..files.scenario import Scenario
     from ..model import Bearing
-    from ..study.control import ControlStudy
-    from ..study.machine_control import MachineControlStudy
-    from ..study.stability import Campbell
-    from ..study.tolerances import ToleranceStudy
     from .recording import RecordingContents
 
 
@@ -202,7 +197,7 @@ def _recording_contents(results: Results) -> RecordingContents:
     both = len({orbit.constant_speed for orbit in results.orbits}) > 1
     return RecordingContents(
         title=results.scenario.title,
-        summary=_markdown_summary(results),
+        summary=markdown_summary(results),
         # Runs at one speed and through the speeds beside each other are the whole job.
         kind=kinds.pop() if len(kinds) == 1 and not both else "",
         orbits=results.orbits,
@@ -235,7 +230,7 @@ def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "O
 
     several = (orbits,) if isinstance(orbits, Orbit) else tuple(orbits)
     kind = several[0].kind if several else ""
-    return write_recording(path, RecordingContents(title, _orbit_notes(several), kind, several))
+    return write_recording(path, RecordingContents(title, orbit_notes(several), kind, several))
 
 
 def record_scenario(
@@ -276,181 +271,3 @@ def _surrounding_table(scenario: Scenario, workers: int | None = None) -> Coeffi
         operating=replace(scenario.operating, speed=tuple(speeds[chosen].tolist())),
     )
     return tabulate(one, workers=workers)
-
-
-_HEATING = ("load", "friction_force", "max_pressure", "max_temperature", "critical_mass")
-
-
-def _markdown_summary(results: Results) -> str:
-    """Return the summary of the main job as Markdown, for the recording."""
-    facts = summary(results, {})
-    counted = ", ".join(f"{count} {status}" for status, count in facts["counts"].items())
-    lines = [*_conclusion(facts), *([f"Film points: {counted}.", ""] if counted else [])]
-    for text in late_whirl(facts["orbits"], results.curves):
-        lines += [f"{text[0].upper()}{text[1:]}.", ""]
-    for row in facts["heating"]:
-        at = f"{row['speed'] * RPM:.0f} rpm"
-        heads = " | ".join(("model", *(QUANTITIES[name].head for name in _HEATING)))
-        clearance = QUANTITIES["radial_clearance"].said(row["radial_clearance"])
-        lines += [f"## {clearance}, {at}", "", f"| {heads} |", f"|{' --- |' * (len(_HEATING) + 1)}"]
-        for model in results.scenario.thermal_models:
-            one = row.get(model.value)
-            if one is not None:
-                texts = [QUANTITIES[name].text(one[name], 4) for name in _HEATING]
-                if one["critical_mass"] is None:
-                    texts[-1] = one["stability"] or "-"
-                lines.append(f"| {' | '.join((model.value, *texts))} |")
-        lines.append("")
-    return "\n".join([*lines, _orbit_notes(results.orbits, results.orbit_rows)])
-
-
-def _conclusion(facts: Mapping[str, Any]) -> list[str]:
-    """Say what the orbits at constant speed show of heating; nothing without both models."""
-    rates = {
-        row["thermal_model"]: row
-        for row in facts["orbits"]
-        if row["kind"] == "constant speed" and row["growth_rate"] is not None
-    }
-    cold, hot = rates.get("isothermal"), rates.get("thd")
-    if cold is None or hot is None:
-        return []
-    mass = "" if facts["rotor_mass"] is None else f" with {facts['rotor_mass']:.4g} kg per bearing"
-    verdicts = [
-        f"{'grows' if row['growth_rate'] > 0.0 else 'decays'} ({row['growth_rate']:+.3g} 1/s)"
-        for row in (cold, hot)
-    ]
-    lines = [
-        f"At **{hot['speed'][0] * RPM:.0f} rpm**{mass} the orbit **{verdicts[0]}** if heating is "
-        f"neglected and **{verdicts[1]}** with it.",
-        "",
-    ]
-    if cold["growth_rate"] < 0.0 < hot["growth_rate"]:
-        lines += ["The rotor that an isothermal calculation calls stable is unstable.", ""]
-    return lines
-
-
-def _orbit_notes(orbits: Sequence[Orbit], rows: Sequence[dict[str, Any]] | None = None) -> str:
-    """Return what each run shows, how it ended, and what its film force takes for granted.
-
-    As Markdown.
-
-    `rows` are what `describe_orbit` says of the orbits, where that is known already.
-    """
-    rows = [describe_orbit(orbit) for orbit in orbits] if rows is None else rows
-    lines: list[str] = []
-    for orbit, name, row in zip(orbits, run_names(orbits), rows, strict=True):
-        first, last = (round(speed * RPM) for speed in row["speed"])
-        rpm = f"{first} rpm" if first == last else f"{first} to {last} rpm"
-        lines.append(
-            f"- **{run_title(name)}, {rpm}, {row['revolutions']:.4g} turns:"
-            f" {orbit.status.value.replace('_', ' ')}**"
-        )
-        lines += [f"  - {fact}" for fact in _seen(row)]
-        lines += [f"  - {orbit.message}"] if orbit.message else []
-    return "\n".join(lines)
-
-
-def _seen(row: Mapping[str, Any]) -> list[str]:
-    """Return what an orbit shows in numbers, a line each."""
-    facts = []
-    if row["growth_rate"] is not None:
-        word = "grow" if row["growth_rate"] > 0.0 else "decay"
-        facts.append(f"small motions {word} at {row['growth_rate']:+.4g} 1/s")
-    if row["whirl"] is not None:
-        whirl = row["whirl"]
-        facts.append(
-            f"{whirl['direction']} whirl at {whirl['order']:.4f} of the shaft's speed, ellipse"
-            f" {whirl['semi_major'] * _MICRO:.4g} x {whirl['semi_minor'] * _MICRO:.4g} µm"
-        )
-    if row["whirl_range"] is not None:
-        facts.append(whirl_range_text(row["whirl_range"]))
-    facts.append(
-        f"thinnest film {row['min_film'] * _MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
-    )
-    return facts
-
-
-def plane_figures(plane: Plane, title: str = "") -> Iterator[tuple[str, Figure]]:
-    """Return the map of a plane: stable, unstable, and what only heating makes unstable."""
-    from .figures import stability_map
-
-    heading = "\n".join(text for text in (title, held_text(plane.held)) if text)
-    yield plane.file_name, stability_map(plane.dataset, plane.x, plane.y, title=heading)
-
-
-def tolerance_figures(study: ToleranceStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
-    """Return histograms of threshold speed and critical mass, and what matters."""
-    from .figures import tolerance_histograms
-
-    yield "tolerances", tolerance_histograms(study, title)
-
-
-def campbell_figures(curves: Sequence[Campbell], title: str = "") -> Iterator[tuple[str, Figure]]:
-    """Return one diagram for each clearance (and further dimension).
-
-    All its thermal models in it.
-    """
-    from .figures import campbell_diagram
-
-    groups: dict[tuple, list[Campbell]] = {}
-    for curve in curves:
-        key = tuple((n, v) for n, v in curve.choices.items() if n != "thermal_model")
-        groups.setdefault(key, []).append(curve)
-    for number, (key, group) in enumerate(groups.items(), start=1):
-        held = held_text({n: v for n, v in key if n in QUANTITIES and np.isfinite(v)})
-        heading = "\n".join(text for text in (title, held) if text)
-        name = "campbell" if len(groups) == 1 else f"campbell_{number}"
-        yield name, campbell_diagram(group, title=heading)
-
-
-def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str, Figure]]:
-    """Return root locus, Bode diagram of the receptance, and the runs in time."""
-    from ..machine.control import receptance
-    from ..machine.spectrum import MatrixSpectrum
-    from ..machine.tracking import track_modes
-    from .figures import bode_plot, orbit_plot, root_locus
-
-    system, gain = study.system, study.feedback.gain
-    heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
-    share = np.linspace(0.0, 1.5, 61)
-
-    def closed_loop(factor: float) -> np.ndarray:
-        return np.asarray(system.A) - factor * np.asarray(system.B) @ gain
-
-    locus = track_modes(MatrixSpectrum(closed_loop), share)
-    yield "root_locus", root_locus(locus, "share of the gain [-]", heading)
-    frequency = np.geomspace(0.05 * study.speed, 4.0 * study.speed, 400)
-    closed = study.feedback.closed_loop(system)
-    responses = [
-        ("film alone", receptance(system, frequency)[0, 0]),
-        ("with actuator", receptance(closed, frequency)[0, 0]),
-    ]
-    yield "bode", bode_plot(frequency, responses, "receptance x per force x [m/N]", title=heading)
-    runs = {"film alone": study.passive_orbit, "with actuator": study.controlled_orbit}
-    known = {name: orbit for name, orbit in runs.items() if orbit is not None}
-    if known:
-        names = [f"{name}: {one.status.value.replace('_', ' ')}" for name, one in known.items()]
-        yield "control_orbits", orbit_plot(list(known.values()), heading, names=names)
-
-
-def machine_control_figures(
-    study: MachineControlStudy, title: str = ""
-) -> Iterator[tuple[str, Figure]]:
-    """Return the receptance from actuator to sensor, whole and reduced, and the runs in time."""
-    from ..machine.output_feedback import controlled_response
-    from ..machine.reduction import response
-    from .figures import bode_plot
-    from .figures.machine import control_traces
-
-    heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.design.name}".strip()
-    frequency = np.geomspace(0.05 * study.speed, 6.0 * study.speed, 800)
-    system, small = study.system, study.reduction.system
-    responses = [
-        ("whole machine", response(system.A, system.B, system.C)(frequency)[:, 0, 0]),
-        (f"reduced to {small.nstates} states",
-         response(small.A, small.B, small.C)(frequency)[:, 0, 0]),
-        ("with control", controlled_response(system, study.feedback, frequency)[:, 0, 0]),
-    ]  # fmt: skip
-    yield "control_bode", bode_plot(frequency, responses, "x sensor/force x [m/N]", title=heading)
-    if study.controlled is not None and study.passive is not None:
-        yield "control_in_time", control_traces(study.passive, study.controlled, heading)

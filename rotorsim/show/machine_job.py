@@ -53,7 +53,9 @@ def machine_figures(
     results: Mapping[str, MachineResult], study: LateralStudy, spots: HotSpotStudy | None = None
 ) -> Iterator[tuple[str, Figure]]:
     """Give names and figures of all that a machine's results have."""
-    from .figures import machine as draw
+    from . import figures as draw
+    from .figures.machine import decrement_over_stiffness
+    from .figures.machine_response import hot_spot_loop
 
     last = list(results.values())[-1]
     description, title = last.description, last.description.title
@@ -71,9 +73,9 @@ def machine_figures(
     if study.responses:
         yield "unbalance_response", draw.bode_at_probes(study.responses, continuous, title)
     if study.decrement_curves:
-        yield "destabilising", draw.decrement_over_stiffness(study.decrement_curves, title)
+        yield "destabilising", decrement_over_stiffness(study.decrement_curves, title)
     if spots is not None:
-        yield "hot_spot", draw.hot_spot_loop(spots, title)
+        yield "hot_spot", hot_spot_loop(spots, title)
     if description.support and last.known.size:
         rotor = last.machine.rotor
         nodes = [node_at(rotor, entry.at) for entry in description.support]

@@ -20,7 +20,7 @@ from ..study.hot_spot import HotSpotStudy
 from ..study.machine import MachineResult
 from ..study.transient import Transient
 from . import figures
-from .figures.machine import hot_spot_loop
+from .figures.machine_response import hot_spot_loop
 from .figures.orbits import orbit_path
 
 

@@ -23,7 +23,7 @@ _ANALYTICS_NOTE = (
 
 @dataclass(frozen=True)
 class ViewerLaunch:
-    """Whether the viewer was started, what to tell the user, and the command's exit code."""
+    """Outcome of starting the viewer: a message for the user and the command's exit code."""
 
     started: bool
     message: str

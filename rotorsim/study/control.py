@@ -58,13 +58,13 @@ class ControlStudy:
 
     @property
     def saturates(self) -> bool:
-        """Whether the actuator reached its limit in the run in time."""
+        """Return whether the actuator reached its limit in the run in time."""
         force = self.largest_force
         return force is not None and force >= (1.0 - 1e-9) * self.feedback.max_force
 
     @property
     def holds(self) -> bool:
-        """Whether the closed loop is stable and the run in time ends nearer to rest than it began.
+        """Return whether the closed loop is stable and the run in time comes nearer to rest.
 
         Without a run in time, the eigenvalues alone.
         """

@@ -30,10 +30,11 @@ from ..files.scenario.scenario import entry_kind
 from ..model import ThermalModel, preferred_model
 from ..model.entries import choice
 from ..units import QUANTITIES, parse_quantity
+from .changes import OTHERWISE
 from .finished import model_digest
-from .planes import OTHERWISE
+from .processes import stream
 from .stability import stability_curves
-from .sweep import as_table, refuse_other_sources, stream, sweep_points
+from .sweep import as_table, refuse_other_sources, sweep_points
 
 if TYPE_CHECKING:
     import pandas as pd

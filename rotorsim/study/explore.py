@@ -14,7 +14,7 @@ from ..files.scenario import Scenario
 from ..files.scenario.scenario import to_toml
 from ..rows import RPM, ZERO_CELSIUS, shown_unit
 from ..units import parse_quantity
-from .planes import COARSE, with_mesh
+from .changes import COARSE, with_mesh
 from .points import solve
 from .stability import StabilityCurve, stability_curves
 from .sweep import as_table, sweep_points

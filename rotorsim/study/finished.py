@@ -158,7 +158,7 @@ class PointStore:
 
     @contextmanager
     def _trying(self) -> Iterator[None]:
-        """Go on without the file where it fails."""
+        """Run the body; go on without the file where it fails."""
         try:
             yield
         except (OSError, RuntimeError, sqlite3.Error) as error:

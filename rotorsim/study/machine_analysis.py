@@ -23,8 +23,9 @@ from ..machine.peaks import node_at
 from ..machine.statics import Law, StaticEquilibrium, static_equilibrium
 from ..machine.support import Support, TableSupport, Turned, cross_stiffness
 from ..model import Case, LoadTarget, ThermalModel
-from ..model.machine import SupportEntry
+from ..model.supports import SupportEntry
 from ..rotor import Rotor
+from .changes import changed
 from .machine import MachineResult
 from .machine_supports import (
     SupportState,
@@ -34,7 +35,6 @@ from .machine_supports import (
     seal_mounts,
     static_force,
 )
-from .planes import changed
 from .rings import ring_law, ring_support
 from .sweep import Progress, sweep_points
 

@@ -39,7 +39,7 @@ _STEPS = 256
 _LEAST_ERROR = 1e-8
 """Of a reduction, relative: until here it is refined where the whole machine is not held."""
 _CORNER = 10.0
-"""Where a PD's derivative ends, as a multiple of the shaft's speed."""
+"""Frequency at which a PD's derivative ends, as a multiple of the shaft's speed."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,11 +21,14 @@ from ..model import Case, MeshSize
 from ..model.machine import MapEntry
 from ..rotor import Rotor
 from ..threads import on_one_blas_thread
+from .changes import machine_with_mesh
+from .film_axes import solved_speeds
 from .machine import MachineResult
 from .machine_analysis import MachineAnalysis, no_sweep, solve_films_together, thermal_models
 from .machine_supports import SupportState, film_support
-from .planes import Plane, machine_with_mesh, solved_speeds
-from .sweep import Progress, available_cores, map_on_processes, sweep_points
+from .planes import Plane
+from .processes import available_cores, map_on_processes
+from .sweep import Progress, sweep_points
 
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint

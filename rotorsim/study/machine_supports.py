@@ -15,7 +15,7 @@ from ..machine.machine import Mount
 from ..machine.peaks import node_at
 from ..machine.statics import weight
 from ..machine.support import ConstantSupport, MatrixTable, Pedestal, Support, TableSupport, Turned
-from ..model.machine import Matrix, SealEntry, SupportEntry
+from ..model.supports import Matrix, SealEntry, SupportEntry
 from ..rotor import Rotor
 from .rings import centred_damping
 

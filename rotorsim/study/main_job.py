@@ -77,7 +77,7 @@ class Results:
 
     @cached_property
     def orbit_rows(self) -> list[dict[str, Any]]:
-        """What each orbit comes to (see `describe_orbit`)."""
+        """Return the description of each orbit (see `describe_orbit`)."""
         return [describe_orbit(orbit) for orbit in self.orbits]
 
     @property
@@ -115,12 +115,13 @@ def compiled_ahead(scenario: Scenario) -> Iterator[None]:
     Once for an installation: afterwards the machine code is on disk.
     """
     from ..orbit.march import march
-    from .sweep import background
+    from .processes import processes
 
     if scenario.orbit is None or is_kept(march):
         yield
         return
-    with background(_compile_motion):
+    with processes(1) as pool:
+        pool.submit(_compile_motion)
         yield
 
 

@@ -29,7 +29,7 @@ from .rings import damper_force, ring_films
 
 if TYPE_CHECKING:
     from ..model import Case
-    from ..model.machine import Damper, SupportEntry
+    from ..model.supports import Damper, SupportEntry
     from ..rotor import Rotor
     from .machine import MachineResult
 

@@ -12,7 +12,7 @@ from ..bearing.drawing import STANDARD_GRAVITY
 from ..errors import InputError
 from ..machine.statics import Law
 from ..machine.support import MatrixTable, Support
-from ..model.machine import Damper, FloatingRing
+from ..model.supports import Damper, FloatingRing
 from ..orbit.film_map import film_force_map
 from ..orbit.force_map import FilmMapForce
 from ..orbit.forces import BearingForce, ShortBearingForce, find_equilibrium, linearize_force

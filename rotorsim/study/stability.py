@@ -290,7 +290,7 @@ def _campbell(
 def late_whirl(
     orbits: Iterable[Mapping[str, Any]], curves: Sequence[StabilityCurve]
 ) -> Iterator[str]:
-    """Say why a run-up shows its whirl above the threshold speed, where it does.
+    """Describe why a run-up shows its whirl above the threshold speed, where it does.
 
     `orbits` as `rotorsim.orbit.description.describe_orbit` gives them.
     """

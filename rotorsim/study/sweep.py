@@ -2,32 +2,21 @@
 
 from __future__ import annotations
 
-import itertools
-import multiprocessing
-import os
-import signal
 import socket
-import sys
-import threading
-import warnings
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
     CancelledError,
     Executor,
     Future,
-    ProcessPoolExecutor,
     wait,
 )
-from contextlib import ExitStack, closing, contextmanager, nullcontext
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, replace
-from multiprocessing.connection import Connection
-from multiprocessing.connection import wait as wait_for_any
 from pathlib import Path
-from types import ModuleType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from ..arguments import refuse_path
 from ..bearing.operating_point import OperatingPoint, failed_point
@@ -36,6 +25,7 @@ from ..errors import InputError
 from ..film.rupture.reynolds import active_set
 from ..model import Case
 from .finished import Journal, PointStore, model_digest
+from .processes import available_cores, processes
 
 if TYPE_CHECKING:
     from ..bearing.operating_point import OperatingPoint
@@ -159,7 +149,7 @@ def tabulate(
 
 
 def as_table(points: Sequence[OperatingPoint], scenario: Scenario) -> CoefficientTable:
-    """Table of `points` with the provenance of `scenario`."""
+    """Return the table of `points` with the provenance of `scenario`."""
     from ..bearing.table import CoefficientTable
 
     mesh = scenario.film.mesh
@@ -267,13 +257,6 @@ def _on_executor(
             future.cancel()
 
 
-def available_cores() -> int:
-    """Return cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 def refuse_other_sources(wanted: str) -> None:
     """Refuse to compute for a program of another `model_digest`: its numbers might differ.
 
@@ -287,11 +270,6 @@ def refuse_other_sources(wanted: str) -> None:
         )  # fmt: skip
 
 
-_Item = TypeVar("_Item")
-_Result = TypeVar("_Result")
-_THREAD_LIMITS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-
 def _on_processes(
     chunks: Sequence[_Chunk], workers: int, solve_case: Callable[..., Any] | None
 ) -> Iterator[tuple[_Chunk, Points]]:
@@ -302,90 +280,18 @@ def _on_processes(
     lost; the rest goes on in a new pool.
     """
     waiting = deque(chunks)
-    with _one_thread_each():
-        while waiting:
-            running: dict[Future[Points], _Chunk] = {}
-            try:
-                with _pool(workers) as pool:
-                    yield from _drain(pool, waiting, running, workers, solve_case)
-            except BrokenExecutor:
-                for chunk in list(running.values()):
-                    yield from _one_by_one(chunk, solve_case)
-
-
-def map_on_processes(
-    function: Callable[[_Item], _Result],
-    items: Iterable[_Item],
-    workers: int,
-    done: Callable[[int], None] | None = None,
-) -> list[_Result]:
-    """Return results of `function` on every item, in their order, computed by `workers` processes.
-
-    function : It and what it returns must be picklable.
-    workers : 1 computes in this process.
-    done : Called with the number of items done.
-    Raises Exception: What `function` raised, and `BrokenExecutor` where a process was lost.
-    """
-    report = done or (lambda _count: None)
-    results: list[_Result] = []
-    if workers == 1:
-        for item in items:
-            results.append(function(item))
-            report(len(results))
-        return results
-    with _one_thread_each(), _pool(workers) as pool:
-        with _anonymous_main():
-            futures = [pool.submit(function, item) for item in items]
-        for future in futures:
-            results.append(future.result())
-            report(len(results))
-    return results
-
-
-def stream(
-    function: Callable[[_Item], _Result],
-    items: Iterable[_Item],
-    executor: Executor | None = None,
-    workers: int | None = None,
-) -> Generator[_Result, None, None]:
-    """Return results of `function` on every item as they come; few items are in work at a time.
-
-    executor, workers : As for `tabulate`.
-    Raises Exception: What `function` raised, and `BrokenExecutor` where a process was lost.
-    """
-    workers = workers or available_cores()
-    if executor is None and workers == 1:
-        yield from map(function, items)
-        return
-    waiting = iter(items)
-    with _one_thread_each(), nullcontext(executor) if executor else _pool(workers) as pool:
-        running: set[Future[_Result]] = set()
+    while waiting:
+        running: dict[Future[Points], _Chunk] = {}
         try:
-            while True:
-                with _anonymous_main():
-                    for item in itertools.islice(waiting, 4 * workers - len(running)):
-                        running.add(pool.submit(function, item))
-                if not running:
-                    return
-                finished, running = wait(running, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    yield future.result()
-        finally:
-            for future in running:
-                future.cancel()
-
-
-@contextmanager
-def background(function: Callable[[], object]) -> Iterator[None]:
-    """Call a function in another process during the block; wait for its end."""
-    with _one_thread_each(), _pool(1) as pool:
-        with _anonymous_main():
-            pool.submit(function)
-        yield
+            with processes(workers) as pool:
+                yield from _drain(pool, waiting, running, workers, solve_case)
+        except BrokenExecutor:
+            for chunk in list(running.values()):
+                yield from _one_by_one(chunk, solve_case)
 
 
 def _drain(
-    pool: ProcessPoolExecutor,
+    pool: Executor,
     waiting: deque[_Chunk],
     running: dict[Future[Points], _Chunk],
     workers: int,
@@ -396,9 +302,8 @@ def _drain(
     limit = 2 * workers if is_kept(active_set) else 1
     while waiting or running:
         while waiting and len(running) < limit:
-            with _anonymous_main():
-                future = pool.submit(_solve_chunk, waiting[0], solve_case)
-            running[future] = waiting.popleft()
+            running[pool.submit(_solve_chunk, waiting[0], solve_case)] = waiting[0]
+            waiting.popleft()
         finished, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in finished:
             if isinstance(future.exception(), BrokenExecutor):
@@ -413,71 +318,5 @@ def _one_by_one(
 ) -> Iterator[tuple[_Chunk, Points]]:
     for speed in chunk.speeds:
         single = _Chunk(chunk.number, chunk.case, (speed,))
-        with _pool(1) as pool:
-            with _anonymous_main():
-                future = pool.submit(_solve_chunk, single, solve_case)
-            yield single, _result_or_failure(future, single)
-
-
-@contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
-    """Start processes that end with the block, at once if it raises, or with this process.
-
-    Each worker holds the reading end of a pipe that nobody writes to: it closes when the block
-    ends, or when this process is killed.
-    """
-    # "spawn" everywhere: forking a process that has threads (BLAS, a viewer) can hang.
-    context = multiprocessing.get_context("spawn")
-    leash, hand = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(
-        workers, mp_context=context, initializer=_start_worker, initargs=(leash,)
-    )
-    try:
-        yield pool
-        pool.shutdown(wait=True)
-    finally:
-        hand.close()
-        pool.shutdown(wait=True, cancel_futures=True)
-        leash.close()
-
-
-def _start_worker(leash: Connection) -> None:
-    # The parent decides what an interruption means; the worker would only add a traceback.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # Said by the parent already.
-    warnings.filterwarnings("ignore", message="compiled code cannot be kept")
-    threading.Thread(target=_end_with_parent, args=(leash,), daemon=True).start()
-
-
-def _end_with_parent(leash: Connection) -> None:
-    """End with the parent: the workers of a killed one would wait for work for ever."""
-    wait_for_any([leash])
-    os._exit(1)
-
-
-@contextmanager
-def _anonymous_main() -> Iterator[None]:
-    """Keep a new worker from running the user's script again.
-
-    A spawned process imports the parent's main module first, which is why multiprocessing wants
-    ``if __name__ == "__main__"`` in every script. The workers need nothing from there: their work
-    is in this package. An empty main module leaves them nothing to import, and starts them faster.
-    """
-    main = sys.modules["__main__"]
-    sys.modules["__main__"] = ModuleType("__main__")
-    try:
-        yield
-    finally:
-        sys.modules["__main__"] = main
-
-
-@contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Ask libraries that a worker loads for one thread, which they read as they are loaded."""
-    added = [name for name in _THREAD_LIMITS if name not in os.environ]
-    os.environ.update(dict.fromkeys(added, "1"))
-    try:
-        yield
-    finally:
-        for name in added:
-            os.environ.pop(name, None)
+        with processes(1) as pool:
+            yield single, _result_or_failure(pool.submit(_solve_chunk, single, solve_case), single)

@@ -26,11 +26,12 @@ from ..model.machine import MachineTolerances
 from ..model.tolerances import NORMAL_REACH, Spread, ToleranceSettings
 from ..rotor import Rotor
 from ..rows import RPM
+from .changes import changed, machine_with_mesh, with_mesh
 from .finished import model_digest
 from .machine_analysis import MachineAnalysis, thermal_models
 from .machine_supports import SupportState
-from .planes import changed, machine_with_mesh, with_mesh
-from .sweep import available_cores, map_on_processes, refuse_other_sources, sweep_points
+from .processes import available_cores, map_on_processes
+from .sweep import refuse_other_sources, sweep_points
 
 if TYPE_CHECKING:
     from ..files.scenario import Scenario

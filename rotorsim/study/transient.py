@@ -140,7 +140,7 @@ class Transient:
         )
 
     def verdict(self) -> str:
-        """Say how the transient goes."""
+        """Describe how the transient goes."""
         if self.drained_in is None:
             return self._course()
         return (

@@ -452,6 +452,7 @@ def test_an_interruption_says_what_is_kept_and_the_next_run_resumes(tmp_path):
     assert (tmp_path / "coefficients" / "long.nc").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX pipes")
 def test_a_closed_pipe_is_no_error(tmp_path):
     command = f'"{sys.executable}" -m rotorsim check "{QUICK}" --json | head -n 1'

@@ -147,6 +147,7 @@ def test_damping_called_c_gives_the_same_verdict(here):
     assert said[0]["threshold_speeds"] != said[2]["threshold_speeds"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "rotor", [("--rotor", "r.npz"), ("--mass", "200 kg", "--shaft-stiffness", "20 MN/m")]
 )
@@ -163,12 +164,12 @@ def test_the_table_of_a_rotor_that_is_not_rigid_speaks_of_its_own_verdict(here, 
 
 
 def test_a_wrong_rotor_is_refused_before_films_are_solved(here, monkeypatch):
-    from rotorsim.cli import stability_command
+    from rotorsim.cli import stability_inputs
 
     def solved(*_):
         raise AssertionError("films were solved")
 
-    monkeypatch.setattr(stability_command, "computed_table", solved)
+    monkeypatch.setattr(stability_inputs, "computed_table", solved)
     np.savez("r.npz", **shaft_arrays(Damping=np.eye(36)))
     done = here("stability", "small.toml", "--rotor", "r.npz", "--mass", "900 kg")
     refuse(done, ["--rotor", "--mass", "'r.npz'"])

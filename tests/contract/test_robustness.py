@@ -316,6 +316,7 @@ def started(folder: Path, *words: str, **options) -> subprocess.Popen[str]:
     )  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux")
 @pytest.mark.parametrize("words", [["check", "quick.toml", "--json"], ["check", "quick.toml"]])
 def test_a_full_standard_output_is_said(words, tmp_path):
@@ -326,6 +327,7 @@ def test_a_full_standard_output_is_said(words, tmp_path):
     assert said == "error: standard output: No space left on device\n"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 @pytest.mark.parametrize(("name", "code"), [("SIGTERM", 143), ("SIGINT", 130)])
 def test_a_process_that_is_asked_to_end_leaves_no_temporary_file(name, code, tmp_path):
@@ -397,6 +399,7 @@ def test_a_file_size_limit_ends_with_a_message_and_the_old_table(good_table, tmp
     assert sorted(os.listdir(tmp_path / "out")) == ["good.mat", "good.nc"]
 
 
+@pytest.mark.slow
 def test_failed_points_cost_neither_the_journal_nor_an_older_table(
     here: CommandLine, tmp_path, monkeypatch
 ):
@@ -433,6 +436,7 @@ def test_failed_points_cost_neither_the_journal_nor_an_older_table(
     assert journal.exists()
 
 
+@pytest.mark.slow
 def test_a_table_that_agrees_is_left_as_it_is(here: CommandLine, tmp_path):
     """So that a run of a shipped scenario leaves the checkout clean."""
     scenario = tmp_path / "quick.toml"

@@ -72,6 +72,7 @@ def thresholds(one):
     )
 
 
+@pytest.mark.slow
 def test_it_is_found_by_name_wherever_one_is(here):
     done = here("stability", "dal.nc", "--mass", "1200 kg", "--model", "thd", "--json")
     assert done.returncode == 0, done.stderr

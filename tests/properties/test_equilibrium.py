@@ -141,7 +141,7 @@ def test_a_second_method_finds_no_position_where_none_is_found(block):
             assert point.load == pytest.approx(case.target.load, rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", [754, 1553])
+@pytest.mark.parametrize("seed", [pytest.param(754, marks=pytest.mark.slow), 1553])
 def test_a_position_that_is_known_roughly_is_not_the_answer(seed):
     """Next to the bore the search was given up on a mesh graded for another position."""
     case, speed = any_load(seed)
@@ -167,6 +167,7 @@ def test_a_film_that_nothing_feeds_is_dry_whatever_the_load():
         assert advises is case.bearing.is_plain
 
 
+@pytest.mark.slow
 def test_a_load_beside_a_groove_under_pressure_is_found():
     """Newton's method circles around kinks there; the turning of the force does not."""
     known = known_equilibrium(497)

@@ -279,8 +279,8 @@ _BLOCKS = 8 if os.environ.get("HYPOTHESIS_PROFILE") == "nightly" else 1
 @pytest.mark.parametrize(
     ("first", "count"),
     [
-        (0, 20),
-        pytest.param(20, 70, marks=pytest.mark.slow),
+        (0, 5),
+        pytest.param(5, 85, marks=pytest.mark.slow),
         *(pytest.param(1000 + 250 * n, 250, marks=pytest.mark.slow) for n in range(_BLOCKS)),
     ],
 )

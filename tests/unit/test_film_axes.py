@@ -21,7 +21,9 @@ from rotorsim.model.tolerances import ToleranceSettings, parse_spread
 from rotorsim.rotor import Rotor
 from rotorsim.show.figures import tolerance_histograms
 from rotorsim.status import SolveStatus
-from rotorsim.study.planes import _tabulate_over, changed, plane_of_scenario, with_mesh
+from rotorsim.study.changes import changed, with_mesh
+from rotorsim.study.film_axes import tabulate_over
+from rotorsim.study.planes import plane_of_scenario
 from rotorsim.study.tolerances import _FilmThreshold, _tolerances_of, study_tolerances
 
 HEAD = f'title = "small"\n{BEARING}'
@@ -90,7 +92,7 @@ def test_viscosity_of_a_grade_is_scaled_at_every_temperature():
 def test_table_over_load_and_temperature_holds_the_films_solved_one_by_one():
     scenario = Scenario.from_text(PLAIN)
     loads, temperatures = [6e3, 12e3], [308.15, 318.15]
-    table = _tabulate_over(
+    table = tabulate_over(
         scenario, {"applied_load": loads, "supply_temperature": temperatures}, [700.0, 1100.0],
         workers=1,
     )  # fmt: skip
@@ -117,7 +119,7 @@ def test_table_over_load_and_temperature_holds_the_films_solved_one_by_one():
 
 
 def test_clearance_may_be_any(scenario):
-    table = _tabulate_over(
+    table = tabulate_over(
         scenario, {"radial_clearance": [8e-5, 1.3e-4]}, [900.0],
         thermal_models=["isothermal"], mesh=MeshSize(36, 6, 6, 4), workers=1,
     )  # fmt: skip
@@ -161,7 +163,7 @@ def test_one_of_a_list_is_named_by_its_number():
 def test_table_over_an_entry_holds_the_films_solved_one_by_one():
     scenario, depths = Scenario.from_text(DAMS), [4e-5, 1.2e-4]
     name, mesh = "bearing.pocket[0].depth", MeshSize(48, 12, 6, 4)
-    table = _tabulate_over(
+    table = tabulate_over(
         scenario, {name: depths}, [900.0], thermal_models=["isothermal"], mesh=mesh, workers=1
     )
     assert table.dataset["kxx"].dims[-2:] == (name, "speed")
@@ -195,7 +197,7 @@ def test_bad_entries_as_axes(y, values, said):
 )  # fmt: skip
 def test_bad_axes(scenario, axes):
     with pytest.raises(InputError):
-        _tabulate_over(scenario, axes)
+        tabulate_over(scenario, axes)
 
 
 @pytest.mark.slow
@@ -208,7 +210,7 @@ def test_tolerances_become_a_distribution():
     assert all(column.size == 32 for column in found.samples.inputs.values())
     # Nominal values against the table's own way to a threshold.
     speeds = np.linspace(628.0, 1571.0, 9)
-    table = _tabulate_over(scenario, {}, speeds, thermal_models=["thd"], workers=1)
+    table = tabulate_over(scenario, {}, speeds, thermal_models=["thd"], workers=1)
     machine = Machine.on_identical(Rotor.rigid(300.0), TableSupport(table.interpolator()))
     (nominal,) = threshold_speeds(machine)
     assert found.nominal["threshold_speed"] == pytest.approx(nominal.speed, rel=3e-3)

@@ -281,7 +281,7 @@ def test_another_shaft_keeps_the_disc_of_a_jeffcott_scenario():
     """The total mass of the scenario's rotor, disc and journal, is not the disc's."""
     from scenario_texts import BEARING, CONSTANT_OIL
 
-    from rotorsim.cli.stability_command import _wanted_rotor
+    from rotorsim.cli.stability_inputs import wanted_rotor
     from rotorsim.files.scenario import Scenario
 
     scenario = Scenario.from_text(
@@ -289,8 +289,8 @@ def test_another_shaft_keeps_the_disc_of_a_jeffcott_scenario():
         '[rotor]\nkind = "jeffcott"\ndisc_mass = "550 kg"\njournal_mass = "60 kg"\n'
         'shaft_stiffness = "600 MN/m"\ndisc_damping = "500 N*s/m"\n'
     )
-    found = _wanted_rotor(scenario, None, "200 MN/m", None, None, None)
+    found = wanted_rotor(scenario, None, "200 MN/m", None, None, None)
     assert found == Rotor.jeffcott(550.0, 2e8, 60.0, 500.0)
-    given = _wanted_rotor(scenario, 400.0, "200 MN/m", None, None, None)
+    given = wanted_rotor(scenario, 400.0, "200 MN/m", None, None, None)
     assert given == Rotor.jeffcott(400.0, 2e8)
-    assert _wanted_rotor(scenario, None, None, None, None, None) == scenario.rotor
+    assert wanted_rotor(scenario, None, None, None, None, None) == scenario.rotor

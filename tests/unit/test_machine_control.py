@@ -93,6 +93,7 @@ def test_a_reduction_to_all_states_changes_nothing(plant):
     assert np.abs(part - whole).max() < 1e-6 * np.abs(whole).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", ["lqr", "pd"])
 def test_actuators_away_from_sensors_and_bearings_hold_an_unstable_rotor(design):
     # The sensor beside the other bearing: between it and the actuator the mode bends.
@@ -109,6 +110,7 @@ def test_actuators_away_from_sensors_and_bearings_hold_an_unstable_rotor(design)
     assert fit == pytest.approx(slowest, rel=0.15)
 
 
+@pytest.mark.slow
 def test_growth_in_time_is_the_eigenvalue_without_control():
     found = study('actuator = ["wheel"]\nforce_scale = "500 N"', revolutions=100)
     run, value = found.passive, found.passive_eigenvalues[0]

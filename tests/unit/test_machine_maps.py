@@ -96,6 +96,7 @@ def growth_of(machine):
     return result.modes.largest_growth_rate
 
 
+@pytest.mark.slow
 def test_every_cell_is_the_machine_changed_by_hand(tmp_path):
     options = {"cells": 0, "workers": 1}
     values = {"y": ["50 um", "80 um"]}
@@ -119,6 +120,7 @@ def test_every_cell_is_the_machine_changed_by_hand(tmp_path):
         assert found.growth("isothermal")[i, j] == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_interpolation_between_films_is_as_exact_as_it_says(tmp_path):
     machine = on_films(tmp_path)
     options = {"held": {"speed": "6000 rpm"}, "workers": 1}

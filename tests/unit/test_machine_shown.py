@@ -57,6 +57,7 @@ def results():
     return analyse_machine(MachineFile.from_text(TEXT), workers=1)
 
 
+@pytest.mark.slow
 def test_the_report_says_what_was_found(results, tmp_path):
     from rotorsim.show.report.machine import write_machine_report
 

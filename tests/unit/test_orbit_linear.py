@@ -245,6 +245,7 @@ def test_recognition_of_a_settled_a_synchronous_and_a_growing_run():
     assert short.status is OrbitStatus.COMPLETED
 
 
+@pytest.mark.slow
 def test_whirl_beside_an_unbalance_response_is_quasi_periodic():
     # damping and cross-coupling cancel: a circular whirl at its natural frequency
     force = LinearForce(
@@ -284,6 +285,7 @@ def test_backward_whirl_is_told_from_forward():
     assert np.max(lines.forward) < 1e-3 * lines.backward[peak]
 
 
+@pytest.mark.slow
 def test_cascade_follows_the_synchronous_response_over_a_run_up():
     orbit = simulate(
         problem(

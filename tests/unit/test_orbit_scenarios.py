@@ -174,6 +174,7 @@ def test_linear_coefficients_belong_to_the_loaded_position():
         _orbit_problem(Scenario.from_text(text.replace("static_load = false\n", "")))
 
 
+@pytest.mark.slow
 def test_an_eccentricity_ratio_stands_for_the_load_that_gives_it():
     text = BASE.replace('load = "800 N"', "eccentricity_ratio = 0.4")
     for inception, force in (("free", FilmMapForce), ("max_film", SolvedFilmForce)):
@@ -186,6 +187,7 @@ def test_an_eccentricity_ratio_stands_for_the_load_that_gives_it():
         assert orbit.eccentricity_ratio == pytest.approx(0.4, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_the_harmonic_load_is_recognised_as_what_the_orbit_follows():
     lines = (
         "revolutions = 120\nunbalance = false\n"
@@ -200,6 +202,7 @@ def test_the_harmonic_load_is_recognised_as_what_the_orbit_follows():
     assert said["growth_rate"] is None
 
 
+@pytest.mark.slow
 def test_description_of_an_unbalanced_orbit():
     orbit = simulate_orbit(constant("revolutions = 80"))
     said = describe_orbit(orbit)
@@ -233,6 +236,7 @@ def test_oil_whip_locks_to_the_natural_frequency():
     assert ratio * end.speed[0] == pytest.approx(400.0, rel=0.06)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_shipped_orbits_say_what_is_seen_and_run(path):
     text = path.read_text(encoding="utf-8")
@@ -319,6 +323,7 @@ def test_an_actuator_goes_with_a_film_that_is_solved_at_every_step():
     assert np.abs(held.actuator_force).max() == pytest.approx(5.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", ["lqr", "pd"])
 def test_an_actuator_brings_to_rest_what_whirls_without_it(design):
     run = f"{START}revolutions = 60\n"
@@ -334,6 +339,7 @@ def test_an_actuator_brings_to_rest_what_whirls_without_it(design):
     assert "actuator limited to 100 N per axis; largest actuator force" in held.message
 
 
+@pytest.mark.slow
 def test_the_actuator_never_gives_more_than_its_limit():
     held = simulate_orbit(actuated('force_limit = "5 N"', f"{START}revolutions = 5\n"))
     assert held.message.endswith("largest actuator force 5 N")

@@ -156,6 +156,7 @@ def test_a_table_keeps_the_full_matrices(table, tmp_path):
     assert "critical_mass_synchronous" in again.dataset
 
 
+@pytest.mark.slow
 def test_a_machine_stands_on_the_pads(table):
     support = MatrixTable.of_pads(table, radial_clearance=100e-6)
     assert support.unknowns[:2] == ("x", "y")

@@ -371,6 +371,7 @@ def test_viewer_without_display_or_file(tmp_path, monkeypatch):
     assert "no display" in launch.message
 
 
+@pytest.mark.slow
 def test_half_a_million_samples_take_seconds(tmp_path):
     long = orbit(count=500_001)
     start = time.perf_counter()

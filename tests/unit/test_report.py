@@ -161,6 +161,7 @@ def test_two_scenarios_beside_each_other(results):
     assert "Inputs: no difference." in same
 
 
+@pytest.mark.slow
 def test_stable_incomplete_and_unknown_are_told_apart(results, points, scenario):
     table = results.table
     light = replace(results, curves=tuple(stability_curves(table, 10.0)))
@@ -204,6 +205,7 @@ def test_the_headline_names_range_changes_and_extremes(results, points):
     assert "hottest oil 100 °C (thd, c = 100 µm, 9000 rpm)" in said
 
 
+@pytest.mark.slow
 def test_a_rotor_that_is_not_rigid_is_told_from_the_rigid_one():
     flexible = """[rotor]
 kind = "jeffcott"
@@ -286,6 +288,7 @@ def test_two_machines_beside_each_other():
     assert "The files are the same." in same
 
 
+@pytest.mark.slow
 def test_measured_points_have_their_section(results, tmp_path):
     path = tmp_path / "points.csv"
     path.write_text("speed [rpm],load [kN]\n9000,20\n")

@@ -47,6 +47,12 @@ def table() -> CoefficientTable:
     return CoefficientTable.from_points(make_points(), {"scenario": 'title = "x µ"', "mesh": "8x4"})
 
 
+@pytest.fixture(scope="module")
+def written(table, tmp_path_factory) -> bytes:
+    """Contents of the table's file."""
+    return table.save(tmp_path_factory.mktemp("written") / "t.nc").read_bytes()
+
+
 def test_assembly_puts_every_point_in_its_place(table):
     assert dict(table.dataset.sizes) == {"thermal_model": 2, "radial_clearance": 2, "speed": 5}
     for i, model in enumerate(MODELS):
@@ -67,6 +73,7 @@ def test_every_variable_has_units_and_a_name(table):
         assert variable.attrs["long_name"], name
 
 
+@pytest.mark.slow
 def test_coefficients_over_the_whirl_frequency_are_kept(tmp_path):
     ratios = np.array([0.5, 1.0])
     points = [make_point("isothermal", 1e-4, speed) for speed in SPEEDS]
@@ -200,6 +207,7 @@ def test_stacking_along_a_further_dimension(table):
         CoefficientTable.stack([table], "load", [1.0])
 
 
+@pytest.mark.slow
 def test_file_round_trip(table, tmp_path):
     import xarray as xr
 
@@ -221,6 +229,7 @@ def test_file_round_trip(table, tmp_path):
     CoefficientTable.load(path)
 
 
+@pytest.mark.slow
 def test_a_long_scenario_is_kept(table, tmp_path):
     text = "# " + "long " * 40_000
     big = CoefficientTable(table.dataset.assign_attrs(scenario=text))
@@ -229,17 +238,15 @@ def test_a_long_scenario_is_kept(table, tmp_path):
 
 
 @pytest.mark.parametrize("cut", [0, 1, 100, 0.5, 0.9, -1])
-def test_truncated_files_are_refused(table, tmp_path, cut):
-    path = table.save(tmp_path / "t.nc")
-    data = path.read_bytes()
-    path.write_bytes(data[: int(cut * len(data)) if isinstance(cut, float) else cut])
+def test_truncated_files_are_refused(written, tmp_path, cut):
+    path = tmp_path / "t.nc"
+    path.write_bytes(written[: int(cut * len(written)) if isinstance(cut, float) else cut])
     with pytest.raises(TableError, match=r"t\.nc"):
         CoefficientTable.load(path)
 
 
-def test_damaged_block_is_noticed(table, tmp_path):
-    path = table.save(tmp_path / "t.nc")
-    data = path.read_bytes()
+def test_damaged_block_is_noticed(table, written, tmp_path):
+    path, data = tmp_path / "t.nc", written
     block = np.ascontiguousarray(table.dataset["kxy"].values).tobytes()
     assert data.count(block) == 1
     place = data.index(block) + 9
@@ -296,10 +303,9 @@ def test_no_flipped_bit_changes_a_table(table, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["speed", "radial_clearance", "kxx", "load"])
-def test_a_flipped_bit_shows_without_the_checksum_of_the_file_too(table, tmp_path, name):
+def test_a_flipped_bit_shows_without_the_checksum_of_the_file_too(table, written, tmp_path, name):
     """As another program would write it anew: every block of numbers has a checksum of HDF5."""
-    path = table.save(tmp_path / "t.nc")
-    data = path.read_bytes()
+    path, data = tmp_path / "t.nc", written
     block = np.ascontiguousarray(table.dataset[name].values).tobytes()
     place = data.index(block) + len(block) - 2
     changed = bytearray(data[: data.rindex(b"\nrotorsim sha256 ")])

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from rotorsim import units
 from rotorsim.errors import InputError
 from rotorsim.units import QUANTITIES, parse_quantity
 
@@ -231,6 +232,35 @@ def test_any_unit_expression_is_answered(number: str, unit: str, kind: str) -> N
 def test_feet_and_metres_agree(value: float) -> None:
     feet = parse_quantity(f"{value:.17g} ft", "length")
     assert feet == pytest.approx(0.3048 * value, rel=1e-13)
+
+
+def test_usual_units_are_what_pint_makes_of_them(monkeypatch: pytest.MonkeyPatch) -> None:
+    numbers = ("1", "0.1", "3", "12.7", "40", "97.3", "128")
+    texts = [
+        (f"{number} {unit}", kind)
+        for kind, factors in units._COMMON.items()
+        for unit in factors
+        for number in numbers
+        if abs(float(number) * factors[unit]) < 0.5 * units.QUANTITIES[kind].largest
+    ]
+    usual = [parse_or_message(*one) for one in texts]
+    monkeypatch.setattr(units, "_COMMON", {})
+    units._conversion.cache_clear()
+    assert usual == [parse_or_message(*one) for one in texts]
+    units._conversion.cache_clear()
+    assert sum(isinstance(value, float) for value in usual) > 300
+
+
+def parse_or_message(text: str, kind: str) -> float | str:
+    try:
+        return parse_quantity(text, kind)
+    except InputError as error:
+        return str(error)
+
+
+def test_a_file_of_usual_units_needs_no_pint() -> None:
+    code = "import sys, rotorsim; rotorsim.load_scenario('dal'); sys.exit('pint' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
 def test_importing_the_module_leaves_pint_alone() -> None:

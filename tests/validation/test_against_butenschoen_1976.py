@@ -75,6 +75,7 @@ def test_friction_formula_of_the_same_source(row):
     assert found == pytest.approx(expected, rel=BUTENSCHOEN_LOAD)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "row", [r for r in TRUSTED if (r["B_over_D"], r["epsilon"]) in LOAD_EXCEPTIONS], ids=_name
 )
@@ -100,6 +101,7 @@ def test_high_eccentricity(row):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("eccentricity", [0.5, 0.99])
 def test_second_method_agrees_at_the_ends_of_the_range(eccentricity):
     row = next(r for r in ROWS if r["epsilon"] == eccentricity and r["B_over_D"] == 1.0)

@@ -136,6 +136,7 @@ def test_pad_temperatures_of_fillon():
     assert np.abs(_off_theory()).max() < FILLON_KELVIN
 
 
+@pytest.mark.slow
 def test_pad_temperatures_of_fillon_with_deformation():
     """Growth and bending of pads, clearance of hot solids, and a supply that fills the housing."""
     off = _off_theory(supply_flow=FILLON_SUPPLY, expansion=STEEL, youngs_modulus=210e9)

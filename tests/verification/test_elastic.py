@@ -93,6 +93,7 @@ def test_pads_bend_as_their_own_film_asks():
     np.testing.assert_allclose(bent, wanted, atol=0.01 * wanted.max())
 
 
+@pytest.mark.slow
 def test_stiff_pads_do_not_bend_and_frozen_ones_keep_their_shape():
     pivot = SpringPivot(3e8)
     rigid = pad_case(equal_pads(4, first_deg=45.0, arc_deg=70.0, pivot=pivot), LoadTarget(2e3))
@@ -146,6 +147,7 @@ RECESSES = tuple(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cavitation", ["half_sommerfeld", "reynolds", "jfo"])
 @pytest.mark.parametrize(
     ("compliance", "grooves"),
@@ -206,6 +208,7 @@ def test_a_ring_on_springs_bends_as_timoshenko_has_it(wave):
     np.testing.assert_allclose(deflection[:, 0], expected * around, atol=1e-3 * expected)
 
 
+@pytest.mark.slow
 def test_a_long_flat_shell_is_a_strip_built_in_on_both_sides():
     """w = p (b^2/4 - y^2)^2/(24 D) across its width b, far from its ends; none beyond them."""
     wide, thickness, radius = 0.02, 2e-3, 2.0

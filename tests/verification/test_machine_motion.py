@@ -11,7 +11,7 @@ from machine_motions import FILMS, SPRINGS, two_discs
 
 import rotorsim as rs
 from rotorsim.errors import InputError
-from rotorsim.model.machine import Damper, EndSeal, FloatingRing
+from rotorsim.model.supports import Damper, EndSeal, FloatingRing
 from rotorsim.orbit import orbit_ellipse
 from rotorsim.orbit.forces import ShortBearingForce, StopForce
 from rotorsim.orbit.motion import (
@@ -195,6 +195,7 @@ def test_energy_of_a_run_balances(tmp_path) -> None:
     assert np.abs(energy - energy[0] - total).max() < 1e-3 * lost[-1]
 
 
+@pytest.mark.slow
 def test_a_stop_without_friction_and_damping_takes_no_energy() -> None:
     zero = np.zeros((2, 2))
     stop = Link("stop", StopForce(1e-4, 1e8, 0.0, 0.0, 0.05, 1.0), (0, 1), film=False)
@@ -219,6 +220,7 @@ def test_a_stop_without_friction_and_damping_takes_no_energy() -> None:
     assert moment[-1] < moment[0] - 1e-7
 
 
+@pytest.mark.slow
 def test_a_torque_drives_the_shaft_and_its_unbalance(tmp_path) -> None:
     machine = two_discs(
         SPRINGS, '[orbit]\ndrive = { start = "1000 rpm", torque = "20 N*m", duration = "0.4 s" }'

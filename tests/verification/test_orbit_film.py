@@ -98,6 +98,7 @@ def test_map_against_the_film_solved_at_any_position_and_velocity(cavitation, mo
             assert np.hypot(*(found - exact)) < 5e-3 * load
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("eps", [0.985, 0.99, 0.995])
 @pytest.mark.parametrize(
     "velocity",
@@ -289,6 +290,7 @@ def test_subcritical_film_holds_two_motions_at_one_mass():
     assert analyse(caught).amplitude > 0.7 * CLEARANCE
 
 
+@pytest.mark.slow
 def test_the_film_gives_back_over_a_cycle_what_it_takes(cycle):
     steady = steady_part(cycle)
     assert steady is not None

@@ -121,6 +121,7 @@ def test_a_growing_orbit_leaves_enough_cycles_before_it_touches():
     assert growth.rate == pytest.approx(slowest(mass).real, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_unbalance_response_against_the_frequency_response():
     mass, unbalance = 0.4 * critical_mass(), 2e-3
     orbit = simulate_linear(
@@ -142,6 +143,7 @@ def test_unbalance_response_against_the_frequency_response():
     assert ellipse.semi_major > abs(ellipse.semi_minor)
 
 
+@pytest.mark.slow
 def test_energy_balance_over_a_cycle_of_the_unbalance_response():
     mass, unbalance = 0.4 * critical_mass(), 2e-3
     orbit = simulate_linear(

@@ -165,6 +165,7 @@ def test_limit_cycle_on_the_map_equals_the_closed_form():
     assert ratios[0] == pytest.approx(ratios[1], rel=1e-4)
 
 
+@pytest.mark.slow
 def test_energy_over_any_stretch_and_over_the_cycle():
     load, _, _, _, mass, _ = operating_point(0.5)
     orbit = whirl(0.5, 1.05, 0.3, 400, relative_tolerance=1e-9)

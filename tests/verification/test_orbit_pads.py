@@ -78,6 +78,7 @@ def test_a_small_kick_decays_as_the_linear_rotor_and_pads_do(pivot):
     assert np.abs(places - linear).max() < 5e-3 * np.abs(linear).max()
 
 
+@pytest.mark.slow
 def test_energy_of_a_large_motion_of_rotor_and_pads():
     run = problem(
         pads(SpringPivot(4e8)), 1.0, 0.15, samples_per_revolution=512, relative_tolerance=1e-8
@@ -96,6 +97,7 @@ def test_energy_of_a_large_motion_of_rotor_and_pads():
     assert places[:, 2:].std(axis=0).min() > 0.0
 
 
+@pytest.mark.slow
 def test_a_pad_without_load_moves_as_well():
     """Unpreloaded, the upper pads float; the journal thrown at them finds film there."""
     case = pad_case(equal_pads(preload=0.0), LoadTarget(3000.0))

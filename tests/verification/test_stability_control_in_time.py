@@ -53,6 +53,7 @@ def lqr(max_force=np.inf):
     return design_lqr(system, displacement_scale=5e-6, force_scale=500.0, max_force=max_force)
 
 
+@pytest.mark.slow
 def test_passive_rotor_leaves_for_oil_whip():
     orbit = run(FILM, SMALL, revolutions=150.0)
     assert orbit.status is OrbitStatus.LIMIT_CYCLE

@@ -102,7 +102,7 @@ _MAX_SHOWN = 60
 
 
 def _advice(text: str, message: str) -> str:
-    """Say how to mend what ``tomllib`` complained of.
+    """Return advice on how to mend what ``tomllib`` complained of.
 
     text : The whole file.
     message : Of the exception, with line and column.

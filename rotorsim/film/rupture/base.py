@@ -1,4 +1,4 @@
-"""What every rupture condition takes and gives."""
+"""Interface of the rupture conditions."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class PressureSolution:
 
 @dataclass(frozen=True)
 class Terms:
-    """What a film is solved under, besides its operator.
+    """Conditions under which a film is solved, besides its operator.
 
     squeeze : (n, m) array or None. dh/dt [m/s]; None: at rest.
     start : (n, m) bool array or None. Cells taken as full in the first step (a neighbouring
@@ -79,16 +79,16 @@ def solve_any(factor: Factor, right: NDArray[Any]) -> NDArray[Any]:
 
 
 class RuptureCondition(Protocol):
-    """What the film does where it would pull."""
+    """Rule for the film where its pressure would fall below cavitation pressure."""
 
     @property
     def conserves_mass(self) -> bool:
-        """Whether the Couette flow carries the liquid fraction, so that no oil is lost or made."""
+        """Return whether the Couette flow carries the liquid fraction: no oil is lost or made."""
         ...
 
     @property
     def conserves_oil(self) -> bool:
-        """Whether the oil that leaves the full film is kept account of.
+        """Return whether the oil that leaves the full film is kept account of.
 
         All do but ``half_sommerfeld``, whose full film is not in balance with itself, and the film
         that does not rupture.
@@ -126,7 +126,7 @@ class RuptureCondition(Protocol):
 
 
 class ConnectedFilm:
-    """What the conditions share that solve for the pressure alone."""
+    """Base of the conditions that solve for the pressure alone."""
 
     conserves_mass: bool = False
     conserves_oil: bool = False

@@ -12,14 +12,14 @@ from .bearing import (
     thresholds_over_speed,
 )
 from .machine import (
-    bode_at_probes,
     critical_speed_chart,
     growth_over_speed,
     machine_campbell,
     mode_shape,
     mode_shapes,
-    rotor_drawing,
 )
+from .machine_drawing import rotor_drawing
+from .machine_response import bode_at_probes
 from .map import stability_map
 from .orbits import (
     animate_orbits,

@@ -1,4 +1,4 @@
-"""Figures of a machine: its drawing, modes over speed, mode shapes, response, critical speeds."""
+"""Figures of a machine's modes: over speed, in space, critical speeds, growth, decrement."""
 
 from __future__ import annotations
 
@@ -9,30 +9,22 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon, Rectangle
-from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
-from ...files.machine import MachineFile
 from ...machine.branches import Modes
 from ...machine.critical_map import CriticalSpeedMap
 from ...machine.destabilising import DecrementCurve
-from ...machine.output_feedback import LinearMotion
-from ...machine.peaks import ProbeResponse
 from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpeed
-from ...model.shaft import Disc, Section
-from ...rotor import Beam, Rotor
+from ...rotor import Rotor
 from ...rows import RPM, axis_title, in_shown_unit, with_unit
-from ...study.hot_spot import HotSpotStudy
 from ...text import caption
 from .style import (
-    MICRO,
     SETTINGS,
     axes_or_new,
     figure_of,
+    mark_range,
     model_label,
     model_style,
-    new_axes,
     new_figure,
     series_style,
 )
@@ -46,123 +38,6 @@ _WHIRLS = {
 _SHOWN = 2.0
 """Frequencies up to this multiple of the highest speed are drawn."""
 _MILLI = 1e3
-_SHAFT, _SLEEVE, _DISC, _SUPPORT, _SEAL = "#d9dde2", "#eef0f2", "#8fa3b5", "#D55E00", "#009E73"
-
-
-def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None) -> Figure:
-    """Return rotor to scale: sections, discs, added masses, bearings, seals, probes, clearances."""
-    beam = machine.rotor.beam
-    ax = axes_or_new(ax, (8.2, 3.6))
-    top = max(s.outer_diameter for s in beam.sections) / 2.0
-    top = max([top, *(beam.disc_size(disc)[0] for disc in beam.discs if disc.has_size)])
-    for disc in beam.discs:
-        _draw_disc(ax, disc, beam, top)
-    for section in sorted(beam.sections, key=lambda one: one.layer):
-        _draw_section(ax, beam, section)
-    ax.plot(
-        [-0.03 * beam.length * _MILLI, 1.03 * beam.length * _MILLI], [0, 0], color="0.3",
-        linewidth=0.7, linestyle=(0, (12, 3, 2, 3)),
-    )  # fmt: skip
-    size = 0.16 * top * _MILLI
-    for name, entry in zip(machine.support_names, machine.support, strict=True):
-        radius = beam.outer_radius(entry.at) * _MILLI
-        x = entry.at * _MILLI
-        for side in (-1.0, 1.0):
-            tip = side * radius
-            corners = [
-                (x, tip),
-                (x - size, tip + side * 2 * size),
-                (x + size, tip + side * 2 * size),
-            ]
-            ax.add_patch(Polygon(corners, closed=True, fc="w", ec=_SUPPORT, lw=1.4, zorder=4))
-        _label(ax, x, -radius - 2.2 * size, name, _SUPPORT, "top")
-    for entry in machine.seal:
-        radius, x = beam.outer_radius(entry.at) * _MILLI, entry.at * _MILLI
-        ax.plot([x, x], [radius, radius + 2 * size], color=_SEAL, lw=3.0, zorder=4)
-        ax.plot([x, x], [-radius, -radius - 2 * size], color=_SEAL, lw=3.0, zorder=4)
-    for at in dict.fromkeys(entry.at for entry in machine.probe):
-        x, radius = at * _MILLI, _outermost(beam, at) * _MILLI
-        ax.annotate(
-            "", (x, radius), (x, radius + 3.5 * size), zorder=5, annotation_clip=False,
-            arrowprops={"arrowstyle": "-|>", "color": "#0072B2", "lw": 1.2},
-        )  # fmt: skip
-        ax.update_datalim([(x, radius + 5.0 * size)])
-        named = [one.name for one in machine.probe if one.at == at and one.name]
-        _label(ax, x, radius + 3.7 * size, "\n".join(named), "#0072B2", "bottom")
-    for entry in machine.rotor.unbalance:
-        ax.plot(entry.at * _MILLI, 0.0, "o", color="k", ms=4.5, zorder=6)
-    _key(ax, machine)
-    ax.set_aspect("equal", adjustable="datalim")
-    ax.grid(visible=False)
-    ax.set(xlabel="from the left end [mm]", ylabel="radius [mm]", title=caption(title))
-    ax.margins(0.04, 0.22)
-    return figure_of(ax)
-
-
-def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
-    left, right = beam.span(section)
-    ends = np.array([left, right])
-    inner, outer = (part * _MILLI for part in beam.at(ends, section))
-    z = ends * _MILLI
-    face = _SLEEVE if section.layer > 1 else _SHAFT
-    hatch = "////" if not section.stiffness else None
-    halves = (-1.0, 1.0) if inner.any() else (0.0,)
-    for side in halves:
-        low, high = (side * inner, side * outer) if side else (-outer, outer)
-        corners = [(z[0], low[0]), (z[0], high[0]), (z[1], high[1]), (z[1], low[1])]
-        ax.add_patch(
-            Polygon(corners, closed=True, fc=face, ec="0.25", lw=0.8, hatch=hatch, zorder=3)
-        )
-    ax.update_datalim([(z[0], -outer.max()), (z[1], outer.max())])
-
-
-def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
-    x = disc.at * _MILLI
-    if disc.has_size:
-        outer, width = beam.disc_size(disc)
-        shaft = beam.outer_radius(disc.at)
-        for low in (shaft, -outer):
-            box = (x - 0.5 * width * _MILLI, low * _MILLI)
-            height = (outer - shaft) * _MILLI
-            ax.add_patch(
-                Rectangle(box, width * _MILLI, height, fc=_DISC, ec="0.2", lw=0.8, zorder=2)
-            )
-        ax.update_datalim([(x, -1.15 * outer * _MILLI), (x, outer * _MILLI)])
-        _label(ax, x, -1.03 * outer * _MILLI, disc.name, "0.2", "top")
-    else:
-        ax.plot(x, 0.0, "s", color=_DISC, mec="0.2", ms=8, ls="", zorder=6)
-        _label(ax, x, -1.03 * top * _MILLI, disc.name, "0.2", "top")
-
-
-def _outermost(beam: Beam, at: float) -> float:
-    """Return the outer radius of the shaft and its discs at a place [m]."""
-    found = beam.outer_radius(at)
-    for disc in beam.discs:
-        if disc.has_size:
-            outer, width = beam.disc_size(disc)
-            found = max(found, outer) if abs(at - disc.at) <= 0.5 * width else found
-    return found
-
-
-def _label(ax: Axes, x: float, y: float, text: str, color: str, vertical: str) -> None:
-    if text:
-        ax.text(x, y, caption(text), color=color, fontsize=7.5, ha="center", va=vertical, zorder=7)
-
-
-def _key(ax: Axes, machine: MachineFile) -> None:
-    """Return the legend of what the file has, below the drawing."""
-    ax.plot([], [], "^", mfc="w", mec=_SUPPORT, ms=8, ls="", label="bearing")
-    if machine.seal:
-        ax.plot([], [], color=_SEAL, lw=3.0, label="seal")
-    if machine.probe:
-        ax.plot([], [], marker="v", color="#0072B2", ls="", label="probe")
-    if machine.rotor.unbalance:
-        ax.plot([], [], "o", color="k", ms=4.5, ls="", label="unbalance")
-    if any(not disc.polar_inertia for disc in machine.rotor.beam.discs):
-        ax.plot([], [], "s", color=_DISC, mec="0.2", ms=8, ls="", label="added mass")
-    if any(not section.stiffness for section in machine.rotor.beam.sections):
-        ax.fill([], [], fc=_SLEEVE, ec="0.25", hatch="////", label="mass without stiffness")
-    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.18), ncols=6, frameon=False)
 
 
 def machine_campbell(
@@ -211,7 +86,7 @@ def machine_campbell(
         ax.plot(place, place, "o", color="k", mfc="w", ms=5.5, ls="", label=label, zorder=6)
     if grows:
         ax.plot([], [], color="0.4", lw=5.0, alpha=0.45, label="grows (unstable)")
-    _mark_range(ax, continuous)
+    mark_range(ax, continuous)
     ax.set(
         xlabel="shaft speed [rpm]", ylabel="damped frequency [cycles per minute]",
         title=caption(title),
@@ -219,12 +94,6 @@ def machine_campbell(
     ax.set_ylim(0.0, limit)
     ax.legend(loc="upper left")
     return figure_of(ax)
-
-
-def _mark_range(ax: Axes, continuous: tuple[float, float] | None) -> None:
-    if continuous is not None:
-        low, high = (one * RPM for one in continuous)
-        ax.axvspan(low, high, color="#009E73", alpha=0.10, zorder=0, label="continuous speeds")
 
 
 def mode_shapes(
@@ -287,47 +156,6 @@ def mode_shape(
     ax.tick_params(labelsize=7)
     ax.set_xlabel("from the left end [mm]", fontsize=7.5)
     return figure_of(ax)
-
-
-def bode_at_probes(
-    responses: Sequence[ProbeResponse],
-    continuous: tuple[float, float] | None = None,
-    title: str = "",
-    ax: tuple[Axes, Axes] | None = None,
-) -> Figure:
-    """Return amplitude and phase lag at probes over speed, with the peaks' amplification factors.
-
-    ax : (Axes, Axes). For the amplitude and for the phase.
-    """
-    upper, lower = new_axes(2, 1, (6.6, 5.4), sharex=True)[1][:, 0] if ax is None else ax
-    for number, one in enumerate(responses):
-        look = series_style("", number)
-        speed = one.speed * RPM
-        upper.plot(
-            speed, in_shown_unit(one.amplitude * MICRO, "µm"), label=caption(one.name), **look
-        )
-        lag = np.full(one.phase.shape, np.nan)
-        known = np.isfinite(one.phase)
-        lag[known] = np.unwrap(one.phase[known])
-        lower.plot(speed, np.degrees(lag), **look)
-        for peak in one.peaks:
-            factor = peak.amplification_factor
-            place = (peak.speed * RPM, in_shown_unit(peak.amplitude * MICRO, "µm"))
-            upper.plot(*place, "o", color=look["color"], mfc="w", ms=4.5, zorder=5)
-            if factor is not None and factor >= 2.5:
-                upper.annotate(
-                    f"{place[0]:.0f} rpm\nAF {factor:.1f}", place, xytext=(6, -2), fontsize=7,
-                    textcoords="offset points", color=look["color"], va="top",
-                )  # fmt: skip
-    for axes in (upper, lower):
-        _mark_range(axes, continuous)
-    upper.set(ylabel=axis_title("amplitude, zero to peak", "µm"), title=caption(title))
-    upper.set_ylim(bottom=0.0)
-    lower.set(xlabel="shaft speed [rpm]", ylabel="phase lag [deg]")
-    step = 30.0 if np.ptp(lower.get_ylim()) < 240.0 else 90.0
-    lower.yaxis.set_major_locator(MultipleLocator(step))
-    upper.legend(loc="best")
-    return figure_of(upper)
 
 
 def critical_speed_chart(
@@ -409,51 +237,6 @@ def growth_over_speed(
     ax.set(xlabel="shaft speed [rpm]", ylabel="growth rate [1/s]", title=caption(title))
     ax.legend(loc="lower left")
     return figure_of(ax)
-
-
-def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str = "") -> Figure:
-    """Draw displacement at the first sensor without and with control, and the force."""
-    figure, axes = new_axes(2, 1, (6.6, 5.0), title, sharex=True)
-    upper, lower = axes[:, 0]
-    reach = 1.3 * np.abs(controlled.displacement[:, 0]).max() * MICRO
-    for name, run, look in (
-        ("without control", passive, {"color": "0.55", "lw": 0.8}),
-        ("with control", controlled, {"color": "#0072B2", "lw": 1.1}),
-    ):
-        shown = run.displacement[:, 0] * MICRO
-        upper.plot(run.t * _MILLI, shown, label=name, **look)
-        reach = max(reach, min(1.1 * float(np.abs(shown).max()), 3.0 * reach))
-    upper.set(ylabel="x at the sensor [µm]", ylim=(-reach, reach))
-    upper.legend(loc="upper right")
-    for number, word in enumerate("xy"):
-        lower.plot(
-            controlled.t * _MILLI, controlled.force[:, number], label=word,
-            **dict(series_style("", number), linewidth=1.0),
-        )  # fmt: skip
-    lower.set(xlabel="time [ms]", ylabel="force at the actuator [N]")
-    lower.legend(loc="upper right")
-    return figure
-
-
-def hot_spot_loop(study: HotSpotStudy, title: str = "") -> Figure:
-    """Draw the loop's gain over speed, and each journal's temperature difference and lag."""
-    figure, axes = new_axes(3, 1, (6.4, 6.6), sharex=True)
-    above, middle, below = np.ravel(axes)
-    loop = study.loop
-    speed = loop.speed * RPM
-    above.plot(speed, loop.gain[:, 0].real, color="#D55E00", label="real part")
-    above.plot(speed, np.abs(loop.gain[:, 0]), color="#555555", ls="--", label="modulus")
-    above.axhline(1.0, color="#8c1d2f", lw=1.0, label="limit of the real part")
-    above.set(ylabel="gain [-]", title=caption(title))
-    for number, name in enumerate(study.names):
-        look = series_style("", number)
-        middle.plot(speed, 2.0 * np.abs(loop.temperature[:, number]), label=name, **look)
-        below.plot(study.films.speed * RPM, np.degrees(study.lag[:, number]), label=name, **look)
-    middle.set(ylabel="warm less cold side [K]", ylim=(0.0, None))
-    below.set(ylabel="hot behind high spot [°]", xlabel="speed [rpm]")
-    for ax in (above, middle):
-        ax.legend(loc="best")
-    return figure
 
 
 def decrement_over_stiffness(

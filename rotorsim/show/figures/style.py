@@ -122,9 +122,16 @@ def figure_of(ax: Axes) -> Figure:
     return figure
 
 
+def mark_range(ax: Axes, continuous: tuple[float, float] | None) -> None:
+    """Shade the range of continuous speeds [rad/s] along x."""
+    if continuous is not None:
+        low, high = (one * RPM for one in continuous)
+        ax.axvspan(low, high, color="#009E73", alpha=0.10, zorder=0, label="continuous speeds")
+
+
 @dataclass(frozen=True)
 class FigureFiles:
-    """How figures are written where something else than usual is asked for.
+    """Style, width and format of figure files where they differ from the usual.
 
     formats : Suffixes; None: as the command does.
     width : Of each figure [inch]; its height follows. None: as drawn.

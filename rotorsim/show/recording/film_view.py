@@ -39,7 +39,7 @@ _JOURNAL_LIMIT = 100_000
 
 @dataclass(frozen=True)
 class _Quantity:
-    """What colours the film, on one scale for all films of the recording."""
+    """Quantity that colours the film, on one scale for all films of the recording."""
 
     name: str
     unit: str
@@ -207,7 +207,7 @@ def _send_frames(
 
 
 def _caption(film: FilmFrame, quantity: _Quantity, values: Array) -> str:
-    """When, and the largest value; of a temperature that of the means across the film, too."""
+    """Return the time and the largest value; of a temperature that of the means across the film."""
     if quantity.name == "pressure":
         return f"{_moment(film)}, max {values.max():.3g} {quantity.unit}"
     said = f"{_moment(film)}, max {values.max():.1f} °C (mean)"

@@ -67,7 +67,7 @@ def write_machine_recording(results: dict[str, MachineResult], path: str | Path)
 
 
 class _Show:
-    """What is shown, and when."""
+    """Entities to show, and their times."""
 
     def __init__(self, results: dict[str, MachineResult], last: MachineResult) -> None:
         self.results, self.last, self.machine = results, last, last.description

@@ -122,7 +122,7 @@ class MachineRun:
 
     @cached_property
     def magnification(self) -> float:
-        """How many times larger than true displacements are drawn."""
+        """Return the factor by which displacements are drawn larger than true."""
         x, y = self._swing(0, slice(None, None, max(1, self.motion.t.size // 4_000)))
         largest = float(np.hypot(x - x.mean(axis=0), y - y.mean(axis=0)).max())
         thickest = max(radius for _, _, radius in self.spans)

@@ -126,7 +126,7 @@ def send_run(
 
 
 def _frame_rows(run: Run, frame_speeds: ArrayLike) -> tuple[_Indices, _Indices]:
-    """When a run passes from one tabulated speed to the next.
+    """Return the times at which a run passes from one tabulated speed to the next.
 
     frame_speeds : array_like (k,). Tabulated speeds [rad/s].
     Returns rows : (j,) array. Samples at which another frame becomes the nearest; the first is 0.

@@ -245,7 +245,7 @@ _PAGES = ("Overview", "Orbits", "Film", "Stability", "Time series")
 
 @dataclass(frozen=True)
 class _Front:
-    """What the overview of one kind of scenario shows beside orbits, film, map and summary.
+    """Views that the overview of one kind of scenario has beside orbits, film, map and summary.
 
     Series that a run does not have are left out; `frequencies`: its spectrum or cascade.
     """

@@ -1,4 +1,4 @@
-"""What a figure tells the pointer: where its axes lie, their scales, and the values in them."""
+"""Data of a figure for the pointer: places of its axes, their scales, the values in them."""
 
 from __future__ import annotations
 

@@ -177,7 +177,7 @@ def _flow(found: Results) -> str:
 
 
 def _not_rigid(found: Results) -> str:
-    """Say whose critical mass and map are shown, where the scenario's rotor is another one."""
+    """Describe whose critical mass and map are shown, where the scenario's rotor is another one."""
     if not found.curves or not found.curves[0].rotor or found.curves[0].mass is not None:
         return ""
     return html.paragraph(
@@ -188,7 +188,7 @@ def _not_rigid(found: Results) -> str:
 
 
 def _tolerances(found: Results) -> str:
-    """Say that there is a study which is not on this page."""
+    """Return a sentence on a study that is not on this page."""
     given = found.scenario.tolerances
     if given is None:
         return ""

@@ -132,7 +132,7 @@ def _verdict_words(curve: StabilityCurve) -> str:
 
 
 def _log_decrement(curve: StabilityCurve) -> float | None:
-    """Of the slowest mode at the highest speed, 2 pi a/omega_d; None where it does not swing."""
+    """Return 2 pi a/omega_d of the slowest mode at the highest speed; None without swing."""
     if curve.eigenvalues is None:
         return None
     slowest = complex(curve.eigenvalues[-1, 0])

@@ -1,4 +1,4 @@
-"""What a reader must not miss: whether the rotor is stable, how hot and how thin the film gets."""
+"""Verdict at the head of the report: stability, highest temperature, thinnest film."""
 
 from __future__ import annotations
 
