@@ -13,7 +13,7 @@ from ..arrays import Array
 from ..orbit import Orbit
 from ..orbit.analysis import speed_cascade
 from ..orbit.description import describe_orbit, run_names, run_title, whirl_range_text
-from ..rows import QUANTITIES, RPM
+from ..rows import QUANTITIES, RPM, shown, with_unit
 from ..study.main_job import Announce, Attempts, Results, compute, summary
 from ..study.orbits import film_at_rest, orbit_settings
 from ..study.planes import Plane, held_text
@@ -70,14 +70,15 @@ def record_transient(transient: Transient, scenario: Scenario, path: Path) -> Pa
     bearing = scenario.bearing.turned(-scenario.load_direction)
     frames = transient_frames(transient, bearing)
     lines = [transient.verdict(), ""]
+    small, hot = QUANTITIES["radial_clearance"], QUANTITIES["max_temperature"]
     for name, place in transient.moments().items():
         step = transient.steps[place]
         lines.append(
             f"- {name.replace('_', ' ')} after {step.time:.4g} s: clearance "
-            f"{transient.clearance[place] * _MICRO:.4g} µm, thinnest film "
-            f"{step.point.min_film_thickness * _MICRO:.4g} µm, journal "
-            f"{QUANTITIES['max_temperature'].text(step.shaft_temperature)} °C, bush "
-            f"{QUANTITIES['max_temperature'].text(step.bush_temperature)} °C"
+            f"{small.with_unit(transient.clearance[place])}, thinnest film "
+            f"{small.with_unit(step.point.min_film_thickness)}, journal "
+            f"{hot.with_unit(step.shaft_temperature)}, bush "
+            f"{hot.with_unit(step.bush_temperature)}"
         )
     return write_recording(
         path, RecordingContents(scenario.title, "\n".join(lines), films=tuple(frames))
@@ -314,7 +315,8 @@ def _conclusion(facts: Mapping[str, Any]) -> list[str]:
     cold, hot = rates.get("isothermal"), rates.get("thd")
     if cold is None or hot is None:
         return []
-    mass = "" if facts["rotor_mass"] is None else f" with {facts['rotor_mass']:.4g} kg per bearing"
+    carried = facts["rotor_mass"]
+    mass = "" if carried is None else f" with {with_unit(carried, 'kg')} per bearing"
     verdicts = [
         f"{'grows' if row['growth_rate'] > 0.0 else 'decays'} ({row['growth_rate']:+.3g} 1/s)"
         for row in (cold, hot)
@@ -360,12 +362,14 @@ def _seen(row: Mapping[str, Any]) -> list[str]:
         whirl = row["whirl"]
         facts.append(
             f"{whirl['direction']} whirl at {whirl['order']:.4f} of the shaft's speed, ellipse"
-            f" {whirl['semi_major'] * _MICRO:.4g} x {whirl['semi_minor'] * _MICRO:.4g} µm"
+            f" {shown(whirl['semi_major'] * _MICRO, 'µm')} x "
+            f"{with_unit(whirl['semi_minor'] * _MICRO, 'µm')}"
         )
     if row["whirl_range"] is not None:
         facts.append(whirl_range_text(row["whirl_range"]))
     facts.append(
-        f"thinnest film {row['min_film'] * _MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
+        f"thinnest film {with_unit(row['min_film'] * _MICRO, 'µm')}, after "
+        f"{row['min_film_time']:.4g} s"
     )
     return facts
 
@@ -411,7 +415,9 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
     from .figures import bode_plot, orbit_plot, root_locus
 
     system, gain = study.system, study.feedback.gain
-    heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
+    heading = (
+        f"{title}\n{study.speed * RPM:.0f} rpm, {with_unit(study.mass, 'kg')} per bearing".strip()
+    )
     share = np.linspace(0.0, 1.5, 61)
 
     def closed_loop(factor: float) -> np.ndarray:

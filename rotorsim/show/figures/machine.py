@@ -22,7 +22,7 @@ from ...machine.peaks import ProbeResponse
 from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpeed
 from ...model.shaft import Disc, Section
 from ...rotor import Beam, Rotor
-from ...rows import RPM, axis_title, in_shown_unit, with_unit
+from ...rows import RPM, axis_title, in_shown_unit, quantity, with_unit
 from ...study.hot_spot import HotSpotStudy
 from ...text import caption
 from .style import (
@@ -45,7 +45,7 @@ _WHIRLS = {
 }
 _SHOWN = 2.0
 """Frequencies up to this multiple of the highest speed are drawn."""
-_MILLI = 1e3
+_LENGTH = quantity("length", "m")
 _SHAFT, _SLEEVE, _DISC, _SUPPORT, _SEAL = "#d9dde2", "#eef0f2", "#8fa3b5", "#D55E00", "#009E73"
 
 
@@ -60,13 +60,13 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
     for section in sorted(beam.sections, key=lambda one: one.layer):
         _draw_section(ax, beam, section)
     ax.plot(
-        [-0.03 * beam.length * _MILLI, 1.03 * beam.length * _MILLI], [0, 0], color="0.3",
-        linewidth=0.7, linestyle=(0, (12, 3, 2, 3)),
+        np.array([-0.03, 1.03]) * beam.length * _LENGTH.factor, [0, 0], color="0.3", linewidth=0.7,
+        linestyle=(0, (12, 3, 2, 3)),
     )  # fmt: skip
-    size = 0.16 * top * _MILLI
+    size = 0.16 * top * _LENGTH.factor
     for name, entry in zip(machine.support_names, machine.support, strict=True):
-        radius = beam.outer_radius(entry.at) * _MILLI
-        x = entry.at * _MILLI
+        radius = beam.outer_radius(entry.at) * _LENGTH.factor
+        x = entry.at * _LENGTH.factor
         for side in (-1.0, 1.0):
             tip = side * radius
             corners = [
@@ -77,11 +77,11 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
             ax.add_patch(Polygon(corners, closed=True, fc="w", ec=_SUPPORT, lw=1.4, zorder=4))
         _label(ax, x, -radius - 2.2 * size, name, _SUPPORT, "top")
     for entry in machine.seal:
-        radius, x = beam.outer_radius(entry.at) * _MILLI, entry.at * _MILLI
+        radius, x = beam.outer_radius(entry.at) * _LENGTH.factor, entry.at * _LENGTH.factor
         ax.plot([x, x], [radius, radius + 2 * size], color=_SEAL, lw=3.0, zorder=4)
         ax.plot([x, x], [-radius, -radius - 2 * size], color=_SEAL, lw=3.0, zorder=4)
     for at in dict.fromkeys(entry.at for entry in machine.probe):
-        x, radius = at * _MILLI, _outermost(beam, at) * _MILLI
+        x, radius = at * _LENGTH.factor, _outermost(beam, at) * _LENGTH.factor
         ax.annotate(
             "", (x, radius), (x, radius + 3.5 * size), zorder=5, annotation_clip=False,
             arrowprops={"arrowstyle": "-|>", "color": "#0072B2", "lw": 1.2},
@@ -90,11 +90,12 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
         named = [one.name for one in machine.probe if one.at == at and one.name]
         _label(ax, x, radius + 3.7 * size, "\n".join(named), "#0072B2", "bottom")
     for entry in machine.rotor.unbalance:
-        ax.plot(entry.at * _MILLI, 0.0, "o", color="k", ms=4.5, zorder=6)
+        ax.plot(entry.at * _LENGTH.factor, 0.0, "o", color="k", ms=4.5, zorder=6)
     _key(ax, machine)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
-    ax.set(xlabel="from the left end [mm]", ylabel="radius [mm]", title=caption(title))
+    ax.set(xlabel=axis_title("from the left end", "mm"), ylabel=axis_title("radius", "mm"),
+           title=caption(title))  # fmt: skip
     ax.margins(0.04, 0.22)
     return figure_of(ax)
 
@@ -102,8 +103,8 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
 def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
     left, right = beam.span(section)
     ends = np.array([left, right])
-    inner, outer = (part * _MILLI for part in beam.at(ends, section))
-    z = ends * _MILLI
+    inner, outer = (part * _LENGTH.factor for part in beam.at(ends, section))
+    z = ends * _LENGTH.factor
     face = _SLEEVE if section.layer > 1 else _SHAFT
     hatch = "////" if not section.stiffness else None
     halves = (-1.0, 1.0) if inner.any() else (0.0,)
@@ -117,21 +118,21 @@ def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
 
 
 def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
-    x = disc.at * _MILLI
+    x = disc.at * _LENGTH.factor
     if disc.has_size:
         outer, width = beam.disc_size(disc)
         shaft = beam.outer_radius(disc.at)
         for low in (shaft, -outer):
-            box = (x - 0.5 * width * _MILLI, low * _MILLI)
-            height = (outer - shaft) * _MILLI
+            box = (x - 0.5 * width * _LENGTH.factor, low * _LENGTH.factor)
+            height = (outer - shaft) * _LENGTH.factor
             ax.add_patch(
-                Rectangle(box, width * _MILLI, height, fc=_DISC, ec="0.2", lw=0.8, zorder=2)
+                Rectangle(box, width * _LENGTH.factor, height, fc=_DISC, ec="0.2", lw=0.8, zorder=2)
             )
-        ax.update_datalim([(x, -1.15 * outer * _MILLI), (x, outer * _MILLI)])
-        _label(ax, x, -1.03 * outer * _MILLI, disc.name, "0.2", "top")
+        ax.update_datalim([(x, -1.15 * outer * _LENGTH.factor), (x, outer * _LENGTH.factor)])
+        _label(ax, x, -1.03 * outer * _LENGTH.factor, disc.name, "0.2", "top")
     else:
         ax.plot(x, 0.0, "s", color=_DISC, mec="0.2", ms=8, ls="", zorder=6)
-        _label(ax, x, -1.03 * top * _MILLI, disc.name, "0.2", "top")
+        _label(ax, x, -1.03 * top * _LENGTH.factor, disc.name, "0.2", "top")
 
 
 def _outermost(beam: Beam, at: float) -> float:
@@ -261,7 +262,7 @@ def mode_shape(
         with mpl.rc_context(SETTINGS):
             ax = new_figure(4.4, 3.6).add_subplot(projection="3d")
     shape = found.shapes[index, branch]
-    z = np.array([node.position for node in rotor.nodes]) * _MILLI
+    z = np.array([node.position for node in rotor.nodes]) * _LENGTH.factor
     motion = np.array([shape[[x, y]] for x, y in rotor.planes])
     largest = motion[np.abs(motion).max(axis=1).argmax()]
     # Turned to the instant of the largest deflection.
@@ -285,7 +286,7 @@ def mode_shape(
     ax.set_yticks([])
     ax.set_zticks([])
     ax.tick_params(labelsize=7)
-    ax.set_xlabel("from the left end [mm]", fontsize=7.5)
+    ax.set_xlabel(axis_title("from the left end", "mm"), fontsize=7.5)
     return figure_of(ax)
 
 
@@ -347,22 +348,25 @@ def critical_speed_chart(
     ax = axes_or_new(ax, (6.4, 4.8))
     for k in range(chart.speed.shape[1]):
         label = "critical speeds on rising stiffness" if k == 0 else None
-        ax.plot(chart.stiffness, chart.speed[:, k] * RPM, color="k", label=label)
+        stiffness = in_shown_unit(chart.stiffness, "N/m")
+        ax.plot(stiffness, chart.speed[:, k] * RPM, color="k", label=label)
     if principal is not None and speeds is not None:
         for number, (name, values) in enumerate(principal.items()):
             look = dict(series_style("", number + 1), linewidth=1.2)
             for axis in (0, 1):
-                positive = np.where(values[:, axis] > 0.0, values[:, axis], np.nan)
+                positive = in_shown_unit(
+                    np.where(values[:, axis] > 0.0, values[:, axis], np.nan), "N/m"
+                )
                 label = caption(name) if axis == 0 else None
                 ax.plot(positive, speeds * RPM, label=label, **look)
     if continuous is not None:
         low, high = (one * RPM for one in continuous)
         ax.axhspan(low, high, color="#009E73", alpha=0.10, zorder=0, label="continuous speeds")
     ax.set(
-        xscale="log", yscale="log", xlabel="support stiffness [N/m]",
+        xscale="log", yscale="log", xlabel=axis_title("support stiffness", "N/m"),
         ylabel="critical speed [rpm]", title=caption(title),
     )  # fmt: skip
-    ax.set_xlim(chart.stiffness[0], chart.stiffness[-1])
+    ax.set_xlim(*in_shown_unit(chart.stiffness[[0, -1]], "N/m"))
     ax.legend(loc="best")
     return figure_of(ax)
 
@@ -415,22 +419,22 @@ def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str =
     """Draw displacement at the first sensor without and with control, and the force."""
     figure, axes = new_axes(2, 1, (6.6, 5.0), title, sharex=True)
     upper, lower = axes[:, 0]
-    reach = 1.3 * np.abs(controlled.displacement[:, 0]).max() * MICRO
+    reach = 1.3 * in_shown_unit(np.abs(controlled.displacement[:, 0]).max() * MICRO, "µm")
     for name, run, look in (
         ("without control", passive, {"color": "0.55", "lw": 0.8}),
         ("with control", controlled, {"color": "#0072B2", "lw": 1.1}),
     ):
-        shown = run.displacement[:, 0] * MICRO
-        upper.plot(run.t * _MILLI, shown, label=name, **look)
+        shown = in_shown_unit(run.displacement[:, 0] * MICRO, "µm")
+        upper.plot(run.t * 1e3, shown, label=name, **look)
         reach = max(reach, min(1.1 * float(np.abs(shown).max()), 3.0 * reach))
-    upper.set(ylabel="x at the sensor [µm]", ylim=(-reach, reach))
+    upper.set(ylabel=axis_title("x at the sensor", "µm"), ylim=(-reach, reach))
     upper.legend(loc="upper right")
     for number, word in enumerate("xy"):
         lower.plot(
-            controlled.t * _MILLI, controlled.force[:, number], label=word,
+            controlled.t * 1e3, in_shown_unit(controlled.force[:, number], "N"), label=word,
             **dict(series_style("", number), linewidth=1.0),
         )  # fmt: skip
-    lower.set(xlabel="time [ms]", ylabel="force at the actuator [N]")
+    lower.set(xlabel="time [ms]", ylabel=axis_title("force at the actuator", "N"))
     lower.legend(loc="upper right")
     return figure
 
@@ -447,9 +451,11 @@ def hot_spot_loop(study: HotSpotStudy, title: str = "") -> Figure:
     above.set(ylabel="gain [-]", title=caption(title))
     for number, name in enumerate(study.names):
         look = series_style("", number)
-        middle.plot(speed, 2.0 * np.abs(loop.temperature[:, number]), label=name, **look)
+        middle.plot(
+            speed, in_shown_unit(2.0 * np.abs(loop.temperature[:, number]), "K"), label=name, **look
+        )
         below.plot(study.films.speed * RPM, np.degrees(study.lag[:, number]), label=name, **look)
-    middle.set(ylabel="warm less cold side [K]", ylim=(0.0, None))
+    middle.set(ylabel=axis_title("warm less cold side", "K"), ylim=(0.0, None))
     below.set(ylabel="hot behind high spot [°]", xlabel="speed [rpm]")
     for ax in (above, middle):
         ax.legend(loc="best")
