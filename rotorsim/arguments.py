@@ -29,6 +29,19 @@ def refuse_path(value: object, key: str = "scenario") -> None:
         raise InputError("must be a Scenario", key=key, value=type(value).__name__)
 
 
+def refuse_no_machine(value: object) -> None:
+    """Refuse all but a `MachineFile` where one is needed.
+
+    Raises InputError: `value` is of another type.
+    """
+    if not hasattr(value, "bearings"):
+        raise InputError(
+            "must be a MachineFile: rotorsim.load_machine(file) reads it",
+            key="machine",
+            value=type(value).__name__,
+        )
+
+
 def file_path(value: object) -> Path:
     """Return the path of a file given by text or path; refuse None, open files and the like.
 

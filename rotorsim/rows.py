@@ -52,6 +52,17 @@ _US = {
     "g mm": ("oz in", 1.0 / 28.349523125 / 25.4, 0.0),
     "MN/m": ("klbf/in", 1e3 * 0.0254 / 4.4482216152605, 0.0),
     "kN s/m": ("lbf s/in", 1e3 * 0.0254 / 4.4482216152605, 0.0),
+    "kN/mm": ("klbf/in", 1e3 * 0.0254 / 4.4482216152605, 0.0),
+    "N m": ("lbf in", 1.0 / 4.4482216152605 / 0.0254, 0.0),
+    "kg m²": ("lb in²", 1.0 / 0.45359237 / 0.0254**2, 0.0),
+    "GPa": ("Mpsi", 1e3 / 6894.757293168, 0.0),
+    "K": ("°F", 1.8, 0.0),
+    "m/s": ("ft/s", 1.0 / 0.3048, 0.0),
+    "mPa s": ("cP", 1.0, 0.0),
+    "kg/m³": ("lb/ft³", 0.3048**3 / 0.45359237, 0.0),
+    "J/(kg K)": ("BTU/(lb °F)", 1.0 / 4186.8, 0.0),
+    "W/(m K)": ("BTU/(h ft °F)", 0.3048 * 3600.0 / 1055.05585262 / 1.8, 0.0),
+    "W/(m² K)": ("BTU/(h ft² °F)", 0.3048**2 * 3600.0 / 1055.05585262 / 1.8, 0.0),
 }
 """US customary unit in place of one that is shown otherwise: its name, factor and offset."""
 _shown_in = ["si"]
@@ -109,9 +120,9 @@ def heads(*texts: str) -> tuple[str, ...]:
     return tuple(found)
 
 
-def with_unit(value: float, unit: str, digits: int = 4) -> str:
-    """Return short text of a value in `unit`, written in the unit that is shown in its place."""
-    return f"{number(in_shown_unit(value, unit), digits)} {shown_unit(unit)[0]}"
+def with_unit(value: float | None, unit: str, digits: int = 4) -> str:
+    """Return short text of a value in `unit`, with the unit that is shown in its place."""
+    return f"{shown(value, unit, digits)} {shown_unit(unit)[0]}"
 
 
 @dataclass(frozen=True)
@@ -172,10 +183,14 @@ class Quantity:
             return f"{shown:.0f}"
         return number(shown, digits or self.digits)
 
+    def with_unit(self, value: float | None, digits: int | None = 4) -> str:
+        """Write an SI value with the unit shown: ``100 µm``."""
+        return f"{self.text(value, digits)} {self.unit}".strip()
+
     def said(self, value: float | None) -> str:
-        """Write an SI value with its unit: ``c = 100 µm``."""
+        """Write an SI value with its name and unit: ``c = 100 µm``."""
         name = f"{self.symbol} = " if len(self.symbol) == 1 or self.owner else ""
-        return f"{self.owner} {name}{self.text(value, 4)} {self.unit}".strip()
+        return f"{self.owner} {name}{self.with_unit(value)}".strip()
 
 
 QUANTITIES = {

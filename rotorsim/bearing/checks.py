@@ -16,11 +16,13 @@ from ..model import (
     ShaftModel,
     ThermalModel,
 )
-from ..units import ZERO_CELSIUS
+from ..rows import QUANTITIES, with_unit
 
 if TYPE_CHECKING:
     from ..film.heat import HeatBalance
 
+HOTTEST = QUANTITIES["max_temperature"]
+"""How temperatures are shown."""
 TURBULENT_REYNOLDS = 1000.0
 """rho U c/mu above which a bearing film is expected to be turbulent (Constantinescu)."""
 CRITICAL_TAYLOR = 41.2
@@ -168,8 +170,8 @@ def regime_warnings(
     roughness = case.bearing.roughness
     if min_film_thickness is not None and min_film_thickness < roughness:
         found.append(
-            f"minimum film {min_film_thickness * 1e6:.3g} µm is below the roughness "
-            f"{roughness * 1e6:.3g} µm: the surfaces touch"
+            f"minimum film {with_unit(min_film_thickness * 1e6, 'µm', 3)} is below the roughness "
+            f"{with_unit(roughness * 1e6, 'µm', 3)}: the surfaces touch"
         )
     anchored = case.film.inception is Inception.MAX_FILM or case.bearing.grooves
     if case.thermal.model is ThermalModel.THD and not anchored:
@@ -208,8 +210,8 @@ def _temperature_warnings(case: Case, max_temperature: float | None) -> list[str
     ):
         if value is not None and not low <= value <= high:
             found.append(
-                f"{name} {value - ZERO_CELSIUS:.1f} °C is outside the oil's range "
-                f"({low - ZERO_CELSIUS:.0f} to {high - ZERO_CELSIUS:.0f} °C)"
+                f"{name} {HOTTEST.with_unit(value)} is outside the oil's range "
+                f"({HOTTEST.text(low)} to {HOTTEST.with_unit(high, 3)})"
             )
     return found
 
@@ -228,7 +230,7 @@ def _held_walls(case: Case, max_temperature: float | None, heat: HeatBalance | N
     if not part > _MOST_TO_HELD_WALLS:
         return []
     walls = " and ".join(name for name, power in held.items() if power > 0.0)
-    ambient = f"{case.thermal.ambient_temperature - ZERO_CELSIUS:.0f} °C"
+    ambient = HOTTEST.with_unit(case.thermal.ambient_temperature, 3)
     return [
         f"{walls} held at ambient temperature, {ambient}, take {100.0 * part:.0f} % of the heat: "
         "the film's temperature is on the low side, its thickness and losses on the high side"

@@ -17,8 +17,10 @@ from ..rows import (
     in_shown_unit,
     number,
     result_html,
+    shown,
     shown_unit,
     table_html,
+    with_unit,
 )
 
 if TYPE_CHECKING:
@@ -106,11 +108,11 @@ def point_text(point: OperatingPoint, name: str, digits: int | None = None) -> s
 
 def point_line(point: OperatingPoint) -> str:
     """Return where a point is and what it comes to, in a line."""
-    load = "no load known" if point.load is None else f"{point.load / 1e3:.4g} kN"
+    load = "no load known" if point.load is None else with_unit(point.load / 1e3, "kN")
     return (
         f"{point.thermal_model}, {point.speed * RPM:.0f} rpm, "
-        f"c = {point.radial_clearance * 1e6:.4g} µm, e/c {point.eccentricity_ratio:.3g}, {load}, "
-        f"{point.status.value}"
+        f"{QUANTITIES['radial_clearance'].said(point.radial_clearance)}, "
+        f"e/c {point.eccentricity_ratio:.3g}, {load}, {point.status.value}"
     )
 
 
@@ -129,10 +131,16 @@ def point_rows(point: OperatingPoint) -> list[Row]:
     for k, flow in enumerate(point.supply_flow, start=1):
         rows.append(Row(f"supply flow of groove {k}", number(flow * factor), unit))
     for k, pressure in enumerate(point.groove_pressure, start=1):
-        rows.append(Row(f"pressure in groove {k}", number(pressure / 1e6), "MPa"))
+        rows.append(
+            Row(f"pressure in groove {k}", shown(pressure / 1e6, "MPa"), shown_unit("MPa")[0])
+        )
     if np.any(np.nan_to_num(point.moment)):
         rows.append(
-            Row("moments on the journal", ", ".join(number(m) for m in point.moment), "N m")
+            Row(
+                "moments on the journal",
+                ", ".join(shown(m, "N m") for m in point.moment),
+                shown_unit("N m")[0],
+            )
         )
     return [
         *rows,

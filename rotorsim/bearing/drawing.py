@@ -12,8 +12,9 @@ from dataclasses import dataclass
 
 from ..model import Bearing, Case, FlowRegime, Groove, LoadTarget, ThermalModel
 from ..model.bearing import angle_between
+from ..rows import with_unit
 from ..units import ZERO_CELSIUS
-from .checks import CRITICAL_TAYLOR, TURBULENT_REYNOLDS, DerivedNumbers, derived_numbers
+from .checks import CRITICAL_TAYLOR, HOTTEST, TURBULENT_REYNOLDS, DerivedNumbers, derived_numbers
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of free fall [m/s2] (ISO 80000-3)."""
@@ -104,8 +105,9 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
     rise = numbers.adiabatic_temperature_rise
     if rise > _GREAT_HEATING:
         found.append(
-            f"adiabatic temperature rise {rise:.0f} K is above {_GREAT_HEATING:.0f} K: this oil "
-            "heats itself thin at once; check viscosity, clearance and speed"
+            f"adiabatic temperature rise {with_unit(rise, 'K', 3)} is above "
+            f"{with_unit(_GREAT_HEATING, 'K', 3)}: this oil heats "
+            "itself thin at once; check viscosity, clearance and speed"
         )
     laminar = case.film.flow is FlowRegime.LAMINAR
     return (*found, *(_warm_flow(numbers) if laminar else ()))
@@ -113,7 +115,7 @@ def heating_warnings(case: Case, speed: float) -> tuple[str, ...]:
 
 def _warm_flow(numbers: DerivedNumbers) -> list[str]:
     """Return limits that only the estimated warm film exceeds."""
-    at = f"with the estimated warm viscosity ({numbers.warm_temperature - ZERO_CELSIUS:.0f} °C)"
+    at = f"with the estimated warm viscosity ({HOTTEST.with_unit(numbers.warm_temperature, 3)})"
     return [
         f"{name} number {warm:.4g} {at} is above {limit:g}: the film may be {what} when hot"
         for name, cold, warm, limit, what in (
@@ -144,8 +146,8 @@ def _size_warnings(numbers: _DrawingNumbers) -> list[str]:
         word = "above" if unit > _UNIT_LOAD[1] else "below"
         limit = _UNIT_LOAD[1] if unit > _UNIT_LOAD[1] else _UNIT_LOAD[0]
         found.append(
-            f"specific load W/(L D) {unit / 1e6:.3g} MPa is {word} {limit / 1e6:g} MPa: check the "
-            "load per bearing and the dimensions"
+            f"specific load W/(L D) {with_unit(unit / 1e6, 'MPa', 3)} is {word} "
+            f"{with_unit(limit / 1e6, 'MPa')}: check the load per bearing and the dimensions"
         )
     ratio = numbers.weight_to_load
     if ratio is not None and not _WEIGHT_TO_LOAD[0] <= ratio <= _WEIGHT_TO_LOAD[1]:
@@ -188,8 +190,8 @@ def _hot_surroundings(case: Case) -> list[str]:
         if groove.supply_temperature is not None:
             temperatures[f"supply temperature of groove {place}"] = groove.supply_temperature
     return [
-        f"{name} {value - ZERO_CELSIUS:.0f} °C is above {_HOT - ZERO_CELSIUS:.0f} °C: "
-        "check its unit"
+        f"{name} {HOTTEST.with_unit(value, 3)} is above "
+        f"{HOTTEST.with_unit(_HOT, 3)}: check its unit"
         for name, value in temperatures.items()
         if value > _HOT
     ]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import InputError
-from ..rows import RPM, number
+from ..rows import RPM, heads, number, shown, with_unit
 from .options import (
     ClearanceOption,
     FolderOption,
@@ -248,7 +248,7 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
 
     said = _machine_document(study, "")
     title = f"{study.speed * RPM:.0f} rpm, {study.design.name}"
-    table = grid(title, "", "growth 1/s", "whirl Hz", "largest µm", "at the end µm")
+    table = grid(title, "", "growth 1/s", "whirl Hz", *heads("largest µm", "at the end µm"))
     for name, values in (
         ("passive", study.passive_eigenvalues), ("controlled", study.controlled_eigenvalues),
     ):  # fmt: skip
@@ -257,12 +257,12 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
         table.add_row(
             name, number(row["growth_rate"]) if row["growth_rate"] else "undamped",
             number(abs(values[0].imag) / (2.0 * math.pi)),
-            *(number(None if one is None else one * 1e6) for one in lengths),
+            *(shown(None if one is None else one * 1e6, "µm") for one in lengths),
         )  # fmt: skip
     reduction = study.reduction
     facts = grid("Design", "", "")
     for label, places in (("actuators at", study.actuators), ("sensors at", study.sensors)):
-        facts.add_row(label, ", ".join(f"{number(at * 1e3)} mm" for at in places))
+        facts.add_row(label, ", ".join(with_unit(at * 1e3, "mm") for at in places))
     facts.add_row("states", f"{study.system.nstates}, reduced to {reduction.system.nstates}")
     facts.add_row("kept exactly", f"{reduction.kept_exactly} states that do not decay")
     facts.add_row(
@@ -277,7 +277,7 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
     facts.add_row("modulus margin", number(study.margin, 3))
     if study.largest_force is not None:
         of = ", saturates" if study.saturates else ""
-        facts.add_row("largest force", f"{number(study.largest_force)} N{of}")
+        facts.add_row("largest force", f"{with_unit(study.largest_force, 'N')}{of}")
     return [table, facts]
 
 
@@ -320,17 +320,18 @@ def _study_tables(study: ControlStudy) -> list[Any]:
     from .tables import grid
 
     said = _study_document(study)
-    title = f"{study.speed * RPM:.0f} rpm, {number(study.mass)} kg per bearing"
+    title = f"{study.speed * RPM:.0f} rpm, {with_unit(study.mass, 'kg')} per bearing"
     table = grid(title, "", "growth 1/s", "run in time", "max eps")
     for name in ("passive", "controlled"):
         row = said[name]
         status = "-" if row["status"] is None else row["status"].replace("_", " ")
         eps = number(row["max_eccentricity_ratio"], 3)
         table.add_row(name, number(row["growth_rate"]), status, eps)
-    heads = ("", "x kN/mm", "y kN/mm", "vx kN s/m", "vy kN s/m")
-    gains = grid("Force = - gain (x, y, vx, vy)", *heads)
+    columns = heads("", "x kN/mm", "y kN/mm", "vx kN s/m", "vy kN s/m")
+    gains = grid("Force = - gain (x, y, vx, vy)", *columns)
     for axis, row in zip("xy", study.feedback.gain, strict=True):
-        cells = (*(number(v / 1e6) for v in row[:2]), *(number(v / 1e3) for v in row[2:]))
+        cells = [shown(v / 1e6, "kN/mm") for v in row[:2]]
+        cells += [shown(v / 1e3, "kN s/m") for v in row[2:]]
         gains.add_row(f"F{axis}", *cells)
     margins = grid("Margins of the loops", "axis", "gain up", "gain down", "phase deg", "modulus")
     for axis, one in zip("xy", study.margins, strict=True):
@@ -345,12 +346,12 @@ def _study_tables(study: ControlStudy) -> list[Any]:
 def _force_words(study: ControlStudy) -> str:
     """Describe the actuator's force in the run in time, and what it had to do."""
     limit = study.feedback.max_force
-    of = "unlimited" if limit == float("inf") else f"of {number(limit)} N"
-    said = f"largest actuator force {number(study.largest_force)} N, {of}"
+    of = "unlimited" if limit == float("inf") else f"of {with_unit(limit, 'N')}"
+    said = f"largest actuator force {with_unit(study.largest_force, 'N')}, {of}"
     if study.saturates:
-        said = f"the actuator saturates at {number(limit)} N"
-    start = f"from {number(study.disturbance * 1e6)} µm beside rest"
-    return f"{said}; {start}, load {number(study.load)} N"
+        said = f"the actuator saturates at {with_unit(limit, 'N')}"
+    start = f"from {with_unit(study.disturbance * 1e6, 'µm')} beside rest"
+    return f"{said}; {start}, load {with_unit(study.load, 'N')}"
 
 
 def _factor(value: float) -> str:

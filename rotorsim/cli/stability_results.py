@@ -229,18 +229,20 @@ def study_tables(study: ToleranceStudy) -> list[RenderableType]:
     title = f"Tolerances: {', '.join(said)}"
     table = grid(title, "", "nominal", *(f"{100 * q:.0f} %" for q in _QUANTILES))
     rows = (
-        ("threshold speed rpm", "threshold_speed", RPM),
-        ("critical mass kg", "critical_mass", 1.0),
-        ("growth rate 1/s", "growth_rate", 1.0),
+        ("threshold speed", "threshold_speed"),
+        ("critical mass", "critical_mass"),
+        ("growth rate", "growth_rate"),
     )
-    for text, name, factor in rows:
+    for text, name in rows:
         if name not in study.nominal:
             continue
-        nominal = study.nominal[name]
-        found = [float(value) * factor for value in study.samples.quantile(name, _QUANTILES)]
-        first = None if nominal is None else nominal * factor
-        cells = ["-" if v is None or not math.isfinite(v) else _short(v) for v in (first, *found)]
-        table.add_row(text, *cells)
+        found = [study.nominal[name], *map(float, study.samples.quantile(name, _QUANTILES))]
+        one = QUANTITIES[name]
+        cells = [
+            "-" if value is None or not math.isfinite(value) else _short(one.shown(value))
+            for value in found
+        ]
+        table.add_row(f"{text} {one.unit}", *cells)
     inputs = grid(
         "What matters (for the growth rate)", "input", "rank correlation", "share of variance"
     )

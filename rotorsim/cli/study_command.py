@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from ..rows import QUANTITIES, Quantity, number
+from ..rows import QUANTITIES, Quantity, number, quantity
 from .options import (
     ModelOption,
     ScenarioArgument,
@@ -18,14 +18,7 @@ from .options import (
 )
 from .output import DONE, INCOMPLETE, Output, film_progress
 
-_INPUTS = {
-    "bearing.radial_clearance": QUANTITIES["radial_clearance"],
-    "bearing.length": Quantity("", "length", "mm", 1e3),
-    "operating.load": QUANTITIES["load"],
-    "thermal.supply_temperature": QUANTITIES["supply_temperature"],
-    "lubricant.viscosity": Quantity("", "viscosity", "mPa s", 1e3),
-}
-"""Units in which inputs are shown; others in SI."""
+_VISCOSITY = Quantity("", "viscosity", "mPa s", 1e3)
 
 if TYPE_CHECKING:
     from ..study.designs import Study
@@ -92,7 +85,9 @@ def _parts(found: Study) -> list[Any]:
     from .tables import grid
 
     inputs = [
-        _INPUTS.get(one.name) or Quantity("", one.name.rsplit(".", 1)[-1], one.unit)
+        _VISCOSITY
+        if one.name == "lubricant.viscosity"
+        else quantity(one.name.partition(".")[2], one.unit)
         for one in found.variables
     ]
     columns = ("threshold_speed", "power_loss", "max_temperature", "min_film_thickness")

@@ -21,7 +21,7 @@ from ..bearing.description import (
 )
 from ..model import ThermalModel
 from ..orbit.description import ORBIT_HEADS, ellipse_text, orbit_texts, whirl_range_text
-from ..rows import QUANTITIES, RPM, number, shown_unit
+from ..rows import QUANTITIES, RPM, number, shown, shown_unit
 from ..study.inputs import input_rows
 from ..study.stability import late_whirl, verdict_word
 from .drawing import bearing_in_text
@@ -105,12 +105,13 @@ def overview(scenario: Scenario, cases: Sequence[dict[str, Any]]) -> Iterator[Re
     yield _inputs(scenario)
     numbers = ("sommerfeld", "reynolds", "taylor", "peclet", "nahme")
     yield grid(
-        f"At {scenario.speeds[-1] * RPM:.0f} rpm", "model", _head("c", "µm"), "U m/s",
-        *map(str.capitalize, numbers), "dT adiab. K",
+        f"At {scenario.speeds[-1] * RPM:.0f} rpm", "model", _head("c", "µm"), _head("U", "m/s"),
+        *map(str.capitalize, numbers), _head("dT adiab.", "K"),
         rows=[
             [case["thermal_model"].value, _SMALL.text(case["radial_clearance"]),
-             number(case["surface_speed"]), *(number(case[f"{name}_number"]) for name in numbers),
-             number(case["adiabatic_temperature_rise"], 3)]
+             shown(case["surface_speed"], "m/s"),
+             *(number(case[f"{name}_number"]) for name in numbers),
+             shown(case["adiabatic_temperature_rise"], "K", 3)]
             for case in cases
         ],
     )  # fmt: skip
@@ -141,7 +142,14 @@ def _warm_table(cases: Sequence[dict[str, Any]]) -> RenderableType:
             ("", "warm_temperature", "warm_"),
         )
     ]  # fmt: skip
-    return grid("Cold, and warm (estimated)", *heads, "mPa s", "Reynolds", "Taylor", rows=rows)
+    return grid(
+        "Cold, and warm (estimated)",
+        *heads,
+        shown_unit("mPa s")[0],
+        "Reynolds",
+        "Taylor",
+        rows=rows,
+    )
 
 
 def _inputs(scenario: Scenario) -> RenderableType:
@@ -210,7 +218,7 @@ def summary_table(curves: Sequence[StabilityCurve]) -> Table:
     """Return the threshold speeds of all curves."""
     rotor = curves[0].rotor if curves else ""
     title = rotor[:1].upper() + rotor[1:] or "Critical mass"
-    table = grid(title, "bearing", "least M_crit kg", "threshold speeds rpm")
+    table = grid(title, "bearing", _head("least M_crit", "kg"), "threshold speeds rpm")
     for curve in curves:
         known = curve.critical_mass[np.isfinite(curve.critical_mass)]
         table.add_row(curve.title, number(known.min() if known.size else None),

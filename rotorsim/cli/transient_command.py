@@ -18,7 +18,7 @@ def transient(output: Output, scenario: ScenarioArgument, folder: OutputFolder =
     import numpy as np
 
     from ..files.scenario import load_scenario
-    from ..rows import QUANTITIES
+    from ..rows import QUANTITIES, heads
     from ..show.figures import transient_plot
     from ..show.job import record_transient, save_figures
     from ..study.transient import simulate_transient
@@ -37,7 +37,8 @@ def transient(output: Output, scenario: ScenarioArgument, folder: OutputFolder =
     if not (output.json or output.quiet):
         celsius, micro = QUANTITIES["max_temperature"], QUANTITIES["radial_clearance"]
         table = grid(
-            loaded.title, "s", "rpm", "shaft °C", "bush °C", "hottest °C", "c µm", "h_min µm",
+            loaded.title,
+            *heads("s", "rpm", "shaft °C", "bush °C", "hottest °C", "c µm", "h_min µm"),
             "growth 1/s",
         )  # fmt: skip
         count = len(found.steps)

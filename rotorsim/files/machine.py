@@ -13,7 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
 
-from ..arguments import above_zero
+from ..arguments import above_zero, file_path
 from ..bearing.table import CoefficientTable
 from ..errors import InputError, ScenarioError, TableError
 from ..file_kinds import is_missing
@@ -422,6 +422,7 @@ def load_machine(path: str | Path) -> MachineFile:
         The file, or one that it names, cannot be read, or an entry is wrong: file, key, value and
         what is allowed.
     """
+    file_path(path)
     found = path if os.path.lexists(path) else shipped_machines().get(str(path), path)
     return MachineFile.from_text(read_text(found), source=found)
 

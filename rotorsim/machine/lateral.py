@@ -16,7 +16,7 @@ from ..arrays import Array, Booleans, ComplexArray
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..model.machine import Clearance
 from ..rotor import Rotor, with_unbalance
-from ..rows import RPM
+from ..rows import RPM, with_unit
 from .branches import Modes
 from .destabilising import DecrementCurve
 from .machine import Machine
@@ -172,7 +172,7 @@ def _clearance_checks(
 
 def _stability_checks(curve: DecrementCurve, edition: str) -> list[Check]:
     """Return the level I stability: decrement at Q_A, and Q0 over Q_A."""
-    place = f"{curve.speed * RPM:.0f} rpm, Q_A = {curve.anticipated * 1e-6:.4g} MN/m"
+    place = f"{curve.speed * RPM:.0f} rpm, Q_A = {with_unit(curve.anticipated * 1e-6, 'MN/m')}"
     decrement = _judged(
         "decrement at the anticipated Q", place, curve.anticipated_decrement, ">=", 0.1, "",
         "0.1", edition,

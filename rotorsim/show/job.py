@@ -65,14 +65,15 @@ def record_transient(transient: Transient, scenario: Scenario, path: Path) -> Pa
     bearing = scenario.bearing.turned(-scenario.load_direction)
     frames = transient_frames(transient, bearing)
     lines = [transient.verdict(), ""]
+    small, hot = QUANTITIES["radial_clearance"], QUANTITIES["max_temperature"]
     for name, place in transient.moments().items():
         step = transient.steps[place]
         lines.append(
             f"- {name.replace('_', ' ')} after {step.time:.4g} s: clearance "
-            f"{transient.clearance[place] * _MICRO:.4g} µm, thinnest film "
-            f"{step.point.min_film_thickness * _MICRO:.4g} µm, journal "
-            f"{QUANTITIES['max_temperature'].text(step.shaft_temperature)} °C, bush "
-            f"{QUANTITIES['max_temperature'].text(step.bush_temperature)} °C"
+            f"{small.with_unit(transient.clearance[place])}, thinnest film "
+            f"{small.with_unit(step.point.min_film_thickness)}, journal "
+            f"{hot.with_unit(step.shaft_temperature)}, bush "
+            f"{hot.with_unit(step.bush_temperature)}"
         )
     return write_recording(
         path, RecordingContents(scenario.title, "\n".join(lines), films=tuple(frames))

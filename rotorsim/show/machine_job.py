@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..machine.critical_map import critical_speed_map, principal_stiffness
 from ..machine.peaks import node_at
 from ..orbit.motion import Motion
-from ..rows import RPM, number
+from ..rows import RPM, heads, shown
 from ..study.hot_spot import HotSpotStudy
 from ..study.lateral import LateralStudy
 from ..study.machine import MachineResult
@@ -147,10 +147,11 @@ def _motion_summary(motion: Motion) -> str:
     lines = [
         f"{document['kind'].replace('_', ' ')}, {document['speed'][0] * RPM:.0f} to "
         f"{document['speed'][1] * RPM:.0f} rpm, {document['revolutions']:.0f} turns, "
-        f"{document['note']}.", "", "| station | amplitude µm | outcome |", "| --- | --- | --- |",
+        f"{document['note']}.", "",
+        f"| station | {heads('amplitude µm')[0]} | outcome |", "| --- | --- | --- |",
     ]  # fmt: skip
     lines += [
-        f"| {markdown(row['station'])} | {number(row['amplitude'] * 1e6)} | "
+        f"| {markdown(row['station'])} | {shown(row['amplitude'] * 1e6, 'µm')} | "
         f"{row['status'].replace('_', ' ')} |"
         for row in document["stations"]
     ]

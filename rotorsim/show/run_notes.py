@@ -7,7 +7,7 @@ from typing import Any
 
 from ..orbit import Orbit
 from ..orbit.description import describe_orbit, run_names, run_title, whirl_range_text
-from ..rows import QUANTITIES, RPM
+from ..rows import QUANTITIES, RPM, shown, with_unit
 from ..study.main_job import Results, summary
 from ..study.stability import late_whirl
 
@@ -39,7 +39,7 @@ def markdown_summary(results: Results) -> str:
 
 
 def _conclusion(facts: Mapping[str, Any]) -> list[str]:
-    """Describe what the orbits at constant speed show of heating; nothing without both models."""
+    """Say what the orbits at constant speed show of heating; nothing without both models."""
     rates = {
         row["thermal_model"]: row
         for row in facts["orbits"]
@@ -48,7 +48,8 @@ def _conclusion(facts: Mapping[str, Any]) -> list[str]:
     cold, hot = rates.get("isothermal"), rates.get("thd")
     if cold is None or hot is None:
         return []
-    mass = "" if facts["rotor_mass"] is None else f" with {facts['rotor_mass']:.4g} kg per bearing"
+    carried = facts["rotor_mass"]
+    mass = "" if carried is None else f" with {with_unit(carried, 'kg')} per bearing"
     verdicts = [
         f"{'grows' if row['growth_rate'] > 0.0 else 'decays'} ({row['growth_rate']:+.3g} 1/s)"
         for row in (cold, hot)
@@ -94,11 +95,13 @@ def _seen(row: Mapping[str, Any]) -> list[str]:
         whirl = row["whirl"]
         facts.append(
             f"{whirl['direction']} whirl at {whirl['order']:.4f} of the shaft's speed, ellipse"
-            f" {whirl['semi_major'] * _MICRO:.4g} x {whirl['semi_minor'] * _MICRO:.4g} µm"
+            f" {shown(whirl['semi_major'] * _MICRO, 'µm')} x "
+            f"{with_unit(whirl['semi_minor'] * _MICRO, 'µm')}"
         )
     if row["whirl_range"] is not None:
         facts.append(whirl_range_text(row["whirl_range"]))
     facts.append(
-        f"thinnest film {row['min_film'] * _MICRO:.4g} µm, after {row['min_film_time']:.4g} s"
+        f"thinnest film {with_unit(row['min_film'] * _MICRO, 'µm')}, after "
+        f"{row['min_film_time']:.4g} s"
     )
     return facts

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..rows import QUANTITIES, RPM
+from ..rows import QUANTITIES, RPM, with_unit
 from ..study.planes import Plane, held_text
 
 if TYPE_CHECKING:
@@ -60,7 +60,9 @@ def control_figures(study: ControlStudy, title: str = "") -> Iterator[tuple[str,
     from .figures import bode_plot, orbit_plot, root_locus
 
     system, gain = study.system, study.feedback.gain
-    heading = f"{title}\n{study.speed * RPM:.0f} rpm, {study.mass:.4g} kg per bearing".strip()
+    heading = (
+        f"{title}\n{study.speed * RPM:.0f} rpm, {with_unit(study.mass, 'kg')} per bearing".strip()
+    )
     share = np.linspace(0.0, 1.5, 61)
 
     def closed_loop(factor: float) -> np.ndarray:

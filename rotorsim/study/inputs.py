@@ -35,12 +35,12 @@ def input_rows(scenario: Scenario) -> dict[str, _Rows]:
 
 def _supply(groove: Groove) -> str:
     """Return how a groove is fed."""
-    pressure = f"{number(groove.supply_pressure / 1e3)} kPa"
+    pressure = with_unit(groove.supply_pressure / 1e3, "kPa")
     match groove.restrictor:
         case None:
             return pressure
         case Pump(rate):
-            return f"pump of {number(rate * 6e4)} L/min"
+            return f"pump of {with_unit(rate * 6e4, 'L/min')}"
         case Capillary(diameter, length):
             size = f"{_millimetres(diameter)} x {_millimetres(length)}"
             return f"{pressure} before a capillary {size}"
@@ -122,7 +122,7 @@ def _bearing(scenario: Scenario) -> _Rows:
             Row(
                 "bore gives way",
                 f"{given.kind}, {_millimetres(given.thickness)} thick, "
-                f"{number(given.youngs_modulus / 1e9)} GPa",
+                f"{with_unit(given.youngs_modulus / 1e9, 'GPa')}",
             )
         )
     if not bearing.grooves and not bearing.arcs:
@@ -155,16 +155,16 @@ def _oil(scenario: Scenario) -> _Rows:
     temperatures = sorted({supply, 40.0 + ZERO_CELSIUS, 100.0 + ZERO_CELSIUS})
     low, high = oil.temperature_range
     rows = [
-        Row(f"viscosity at {_celsius(t)}", f"{number(float(oil.viscosity(t)) * 1e3)} mPa s")
+        Row(f"viscosity at {_celsius(t)}", with_unit(float(oil.viscosity(t)) * 1e3, "mPa s"))
         for t in temperatures
         if low <= t <= high
     ]
     return [
         *_grade(scenario),
         *rows,
-        Row("density", f"{number(oil.density)} kg/m³"),
-        Row("specific heat", f"{number(oil.specific_heat)} J/(kg K)"),
-        Row("thermal conductivity", f"{number(oil.thermal_conductivity)} W/(m K)"),
+        Row("density", with_unit(oil.density, "kg/m³")),
+        Row("specific heat", with_unit(oil.specific_heat, "J/(kg K)")),
+        Row("thermal conductivity", with_unit(oil.thermal_conductivity, "W/(m K)")),
     ]
 
 
@@ -207,7 +207,7 @@ def _film(scenario: Scenario) -> _Rows:
         stiffness = getattr(growth.bush_fit, "stiffness", None)
         held = str(growth.bush_fit).replace("_", " ")
         if stiffness is not None:
-            held = f"housing of {number(stiffness / 1e6)} MN/m"
+            held = f"housing of {with_unit(stiffness / 1e6, 'MN/m')}"
         rows += [
             Row("expansion of shaft, bush", f"{growth.shaft:.3g}, {growth.bush:.3g} 1/K"),
             Row("clearances measured at", _celsius(growth.reference_temperature)),
@@ -215,8 +215,8 @@ def _film(scenario: Scenario) -> _Rows:
         ]
     if thermal.bush is BushModel.CONDUCTION:
         rows += [
-            Row("bush conductivity", f"{number(thermal.bush_conductivity)} W/(m K)"),
-            Row("bush heat transfer", f"{number(thermal.bush_heat_transfer)} W/(m² K)"),
+            Row("bush conductivity", with_unit(thermal.bush_conductivity, "W/(m K)")),
+            Row("bush heat transfer", with_unit(thermal.bush_heat_transfer, "W/(m² K)")),
         ]
     return rows
 

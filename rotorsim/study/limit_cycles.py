@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import refuse_no_machine
 from ..arrays import Array
 from ..files.machine import MachineFile
 from ..model.machine_orbit import MachineForce, MachineOrbit
@@ -29,6 +30,7 @@ def limit_cycles(
     Raises InputError: The static position is stable at all the machine's speeds, or a film has no
         closed form.
     """
+    refuse_no_machine(machine)
     problem, speeds = _at_lowest_speed(machine, orbit)
     return follow_limit_cycle(problem.system, problem.equilibrium, speeds, points=points)
 
@@ -66,6 +68,7 @@ def forced_response(
     that has become periodic (`rs.simulate`), begins a branch elsewhere than at small motions: of
     a whirl that is locked to a fraction of the speed, say.
     """
+    refuse_no_machine(machine)
     problem, speeds = _at_lowest_speed(machine, orbit)
     system, rest = problem.system, problem.equilibrium
     if start is not None:
@@ -106,6 +109,7 @@ def largest_disturbance(
         Largest shift that was seen to die out and smallest that was not [m]; infinity where all
         up to 0.9 of the smallest clearance do.
     """
+    refuse_no_machine(machine)
     settings = orbit or machine.orbit or MachineOrbit()
     problem = motion_problem(machine, replace(settings, unbalance=False, revolutions=revolutions))
     unit = np.asarray(direction, dtype=float) / float(np.hypot(*direction))

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..arguments import refuse_no_machine
 from ..arrays import Array
 from ..bearing.operating_point import OperatingPoint
 from ..errors import InputError
@@ -72,6 +73,7 @@ def analyse_machine(
         The rotor needs static loads and has no two supports that carry them, or a support that
         carries load has no stiffness.
     """
+    refuse_no_machine(description)
     known = thermal_models(description)
     ordered = list(models or known)
     for name in ordered:

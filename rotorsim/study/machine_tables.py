@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Indices
 from ..machine.branches import Modes
-from ..rows import RPM, ZERO_CELSIUS, heads, number, shown, shown_unit, units_shown, with_unit
+from ..rows import RPM, ZERO_CELSIUS, heads, number, shown, with_unit
 from .hot_spot import HotSpotStudy
 from .lateral import LateralStudy
 from .machine import MachineResult, destabilised_by_heating
@@ -151,6 +151,8 @@ def check_rows(study: LateralStudy) -> Iterator[Rows]:
     rows = []
     for check in study.checks:
         value, limit = (_shown(part, check.unit) for part in (check.value, check.limit))
+        if check.passed is False and check.limit is None:
+            limit = "no peak"
         word = {True: "passed", False: "FAILED", None: "not judged"}[check.passed]
         rows.append((f"{check.name}: {check.place}", value, check.comparison, limit, word))
     title = f"Lateral checks ({study.checks[0].edition})"
@@ -219,9 +221,7 @@ def moving_rows(moving: Sequence[Sensitivity]) -> Iterator[Rows]:
 
 def _change(one: Sensitivity) -> str:
     if one.parameter == "supply_temperature":
-        return (
-            f"+{number(one.change * shown_unit('°C')[1])} {'°F' if units_shown() == 'us' else 'K'}"
-        )
+        return f"+{with_unit(one.change, 'K')}"
     if one.parameter == "destabilising_stiffness":
         return f"+{with_unit(one.change / 1e6, 'MN/m', 3)}"
     return f"{one.change:+g}" if one.parameter == "preload" else f"{one.change / one.value:+.0%}"

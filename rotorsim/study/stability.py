@@ -19,7 +19,7 @@ from ..machine.modes import eigenvalues_over_speed, known_speeds, modes
 from ..machine.support import TableSupport, table_support
 from ..machine.thresholds import ThresholdSpeed, threshold_speeds
 from ..rotor import Rotor
-from ..rows import RPM, number
+from ..rows import RPM, number, with_unit
 
 if TYPE_CHECKING:
     from ..bearing.table import CoefficientTable
@@ -30,7 +30,7 @@ def _rotor_words(rotor: Rotor | None) -> str:
     if rotor is None:
         return ""
     if rotor.rigid_mass is not None:
-        return f"rotor of {number(rotor.rigid_mass)} kg per bearing"
+        return f"rotor of {with_unit(rotor.rigid_mass, 'kg')} per bearing"
     words = {"jeffcott": "Jeffcott rotor", "matrices": "rotor of your matrices"}
     return words.get(rotor.kind, "rotor")
 

@@ -18,7 +18,7 @@ from ..film.storage import HeatStorage
 from ..machine.rates import eigenvalues
 from ..model import Bearing, Case, LoadTarget, ThermalModel
 from ..model.transient import TransientSettings, TransientStart
-from ..rows import QUANTITIES
+from ..rows import QUANTITIES, with_unit
 from .orbits import FilmFrame, film_at_rest
 
 if TYPE_CHECKING:
@@ -155,13 +155,13 @@ class Transient:
             hottest = QUANTITIES["max_temperature"]
             return (
                 f"The film ends after {self.time[-1]:.4g} s of {self.duration:.4g} s (hottest "
-                f"until then {hottest.text(reached)} {hottest.unit}): {point.message}"
+                f"until then {hottest.with_unit(reached)}): {point.message}"
             )
         place = self.moments()["least_clearance"]
         said = (
-            f"The clearance is least, {self.clearance[place] * 1e6:.4g} µm, after "
+            f"The clearance is least, {with_unit(self.clearance[place] * 1e6, 'µm')}, after "
             f"{self.time[place]:.4g} s, the film with "
-            f"{np.nanmin(self.values('min_film_thickness')) * 1e6:.4g} µm after "
+            f"{with_unit(np.nanmin(self.values('min_film_thickness')) * 1e6, 'µm')} after "
             f"{self.time[self.moments()['least_film']]:.4g} s"
         )
         if self.rotor_mass is None:

@@ -65,3 +65,18 @@ def test_paths_in_messages_are_plain() -> None:
     assert str(InputError("is no rotor", key="--rotor", value=Path("rotor.npz"))) == (
         "--rotor: is no rotor (found: 'rotor.npz')"
     )
+
+
+@pytest.mark.parametrize("value", [3.5, None, "nonsense", [1, 2]])
+@pytest.mark.parametrize(
+    "call", [rs.analyse_machine, rs.forced_response, rs.largest_disturbance, rs.limit_cycles]
+)
+def test_a_machine_is_asked_for(call, value) -> None:
+    with pytest.raises(InputError, match=r"^machine: must be a MachineFile"):
+        call(value)
+
+
+@pytest.mark.parametrize("call", [rs.load_machine, rs.load_scenario])
+def test_a_file_is_asked_for(call) -> None:
+    with pytest.raises(InputError, match=r"^path: must be the name of a file"):
+        call(3.5)

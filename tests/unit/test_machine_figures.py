@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from rotorsim import rows
 from rotorsim.files.machine import load_machine
 from rotorsim.machine.critical_map import critical_speed_map, principal_stiffness
 from rotorsim.machine.peaks import node_at, probe_responses, response_speeds
@@ -35,6 +36,14 @@ def test_the_drawing_is_to_scale():
         assert name in found
     names = [text.get_text() for text in axes.get_legend().get_texts()]
     assert {"bearing", "seal", "probe", "unbalance", "mass without stiffness"} <= set(names)
+
+
+def test_the_drawing_follows_the_units_shown(monkeypatch):
+    monkeypatch.setattr(rows, "_shown_in", ["us"])
+    (axes,) = plots.rotor_drawing(load_machine("machines/compressor")).axes
+    boxes = [patch.get_path().get_extents(patch.get_patch_transform()) for patch in axes.patches]
+    assert max(box.x1 for box in boxes) == pytest.approx(760.0 / 25.4)
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("from the left end [in]", "radius [in]")
 
 
 def test_every_shipped_machine_can_be_drawn():

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ElementTree
 
 import matplotlib.colors
 import numpy as np
 import pytest
+from matplotlib.text import Text
 from sample_results import campbell_of, chart_of, orbit_of, point_of
 
+from rotorsim import rows
 from rotorsim.bearing.table import CoefficientTable
 from rotorsim.machine.uncertainty import Propagation
 from rotorsim.orbit.analysis import speed_cascade
@@ -115,6 +118,24 @@ def test_every_figure_is_saved_with_named_axes(name, tmp_path):
     assert png.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     assert ElementTree.parse(svg).getroot().tag.endswith("svg")
     assert sorted(p.name for p in (tmp_path / "deep").iterdir()) == [f"{name}.png", f"{name}.svg"]
+
+
+_SI = re.compile(r"\[(µm|mm|N|kN|MPa|kPa|°C|kg|MN/m|N/m|kN s/m|kW)\]|\d (µm|mm|kN|kg|°C|MPa)\b")
+
+
+@pytest.mark.parametrize("name", [name for name in FIGURES if name != "bode"])
+def test_figures_follow_the_units_shown(name, monkeypatch):
+    monkeypatch.setattr(rows, "_shown_in", ["us"])
+    figure = FIGURES[name]()
+    texts = [one.get_text() for one in figure.findobj(Text)]
+    assert [one for one in texts if _SI.search(one)] == []
+
+
+def test_an_orbit_in_mil_is_the_one_in_micrometres(monkeypatch):
+    x = [line.get_xdata() for line in FIGURES["orbits"]().axes[0].lines]
+    monkeypatch.setattr(rows, "_shown_in", ["us"])
+    for one, mil in zip(x, FIGURES["orbits"]().axes[0].lines, strict=True):
+        np.testing.assert_allclose(25.4 * np.asarray(mil.get_xdata()), one)
 
 
 def test_a_figure_saved_twice_is_the_same_file(tmp_path):

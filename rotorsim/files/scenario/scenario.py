@@ -14,7 +14,7 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from ...arguments import finite_number
+from ...arguments import file_path, finite_number
 from ...arrays import Array
 from ...errors import InputError, ScenarioError
 from ...model import Bearing, Case, FilmSettings, Lubricant, Target, ThermalModel, ThermalSettings
@@ -310,6 +310,7 @@ def load_scenario(path: str | Path) -> Scenario:
     >>> load_scenario("quick").source.name
     'quick.toml'
     """
+    file_path(path)
     shipped = shipped_scenarios().get(str(path))
     if shipped is not None and not Path(path).exists():
         path = shipped

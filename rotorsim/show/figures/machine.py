@@ -16,7 +16,7 @@ from ...machine.critical_map import CriticalSpeedMap
 from ...machine.destabilising import DecrementCurve
 from ...machine.thresholds import CRITICAL_DAMPING, CriticalSpeed, ThresholdSpeed
 from ...rotor import Rotor
-from ...rows import RPM, axis_title, in_shown_unit, with_unit
+from ...rows import RPM, axis_title, in_shown_unit, quantity, with_unit
 from ...text import caption
 from .style import (
     SETTINGS,
@@ -37,7 +37,7 @@ _WHIRLS = {
 }
 _SHOWN = 2.0
 """Frequencies up to this multiple of the highest speed are drawn."""
-_MILLI = 1e3
+_LENGTH = quantity("length", "m")
 
 
 def machine_campbell(
@@ -130,7 +130,7 @@ def mode_shape(
         with mpl.rc_context(SETTINGS):
             ax = new_figure(4.4, 3.6).add_subplot(projection="3d")
     shape = found.shapes[index, branch]
-    z = np.array([node.position for node in rotor.nodes]) * _MILLI
+    z = np.array([node.position for node in rotor.nodes]) * _LENGTH.factor
     motion = np.array([shape[[x, y]] for x, y in rotor.planes])
     largest = motion[np.abs(motion).max(axis=1).argmax()]
     # Turned to the instant of the largest deflection.
@@ -154,7 +154,7 @@ def mode_shape(
     ax.set_yticks([])
     ax.set_zticks([])
     ax.tick_params(labelsize=7)
-    ax.set_xlabel("from the left end [mm]", fontsize=7.5)
+    ax.set_xlabel(axis_title("from the left end", "mm"), fontsize=7.5)
     return figure_of(ax)
 
 
@@ -175,22 +175,25 @@ def critical_speed_chart(
     ax = axes_or_new(ax, (6.4, 4.8))
     for k in range(chart.speed.shape[1]):
         label = "critical speeds on rising stiffness" if k == 0 else None
-        ax.plot(chart.stiffness, chart.speed[:, k] * RPM, color="k", label=label)
+        stiffness = in_shown_unit(chart.stiffness, "N/m")
+        ax.plot(stiffness, chart.speed[:, k] * RPM, color="k", label=label)
     if principal is not None and speeds is not None:
         for number, (name, values) in enumerate(principal.items()):
             look = dict(series_style("", number + 1), linewidth=1.2)
             for axis in (0, 1):
-                positive = np.where(values[:, axis] > 0.0, values[:, axis], np.nan)
+                positive = in_shown_unit(
+                    np.where(values[:, axis] > 0.0, values[:, axis], np.nan), "N/m"
+                )
                 label = caption(name) if axis == 0 else None
                 ax.plot(positive, speeds * RPM, label=label, **look)
     if continuous is not None:
         low, high = (one * RPM for one in continuous)
         ax.axhspan(low, high, color="#009E73", alpha=0.10, zorder=0, label="continuous speeds")
     ax.set(
-        xscale="log", yscale="log", xlabel="support stiffness [N/m]",
+        xscale="log", yscale="log", xlabel=axis_title("support stiffness", "N/m"),
         ylabel="critical speed [rpm]", title=caption(title),
     )  # fmt: skip
-    ax.set_xlim(chart.stiffness[0], chart.stiffness[-1])
+    ax.set_xlim(*in_shown_unit(chart.stiffness[[0, -1]], "N/m"))
     ax.legend(loc="best")
     return figure_of(ax)
 

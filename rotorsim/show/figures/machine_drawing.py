@@ -10,10 +10,11 @@ from matplotlib.patches import Polygon, Rectangle
 from ...files.machine import MachineFile
 from ...model.shaft import Disc, Section
 from ...rotor import Beam
+from ...rows import axis_title, quantity
 from ...text import caption
 from .style import axes_or_new, figure_of
 
-_MILLI = 1e3
+_LENGTH = quantity("length", "m")
 _SHAFT, _SLEEVE, _DISC, _SUPPORT, _SEAL = "#d9dde2", "#eef0f2", "#8fa3b5", "#D55E00", "#009E73"
 
 
@@ -28,13 +29,13 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
     for section in sorted(beam.sections, key=lambda one: one.layer):
         _draw_section(ax, beam, section)
     ax.plot(
-        [-0.03 * beam.length * _MILLI, 1.03 * beam.length * _MILLI], [0, 0], color="0.3",
-        linewidth=0.7, linestyle=(0, (12, 3, 2, 3)),
+        np.array([-0.03, 1.03]) * beam.length * _LENGTH.factor, [0, 0], color="0.3", linewidth=0.7,
+        linestyle=(0, (12, 3, 2, 3)),
     )  # fmt: skip
-    size = 0.16 * top * _MILLI
+    size = 0.16 * top * _LENGTH.factor
     for name, entry in zip(machine.support_names, machine.support, strict=True):
-        radius = beam.outer_radius(entry.at) * _MILLI
-        x = entry.at * _MILLI
+        radius = beam.outer_radius(entry.at) * _LENGTH.factor
+        x = entry.at * _LENGTH.factor
         for side in (-1.0, 1.0):
             tip = side * radius
             corners = [
@@ -45,11 +46,11 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
             ax.add_patch(Polygon(corners, closed=True, fc="w", ec=_SUPPORT, lw=1.4, zorder=4))
         _label(ax, x, -radius - 2.2 * size, name, _SUPPORT, "top")
     for entry in machine.seal:
-        radius, x = beam.outer_radius(entry.at) * _MILLI, entry.at * _MILLI
+        radius, x = beam.outer_radius(entry.at) * _LENGTH.factor, entry.at * _LENGTH.factor
         ax.plot([x, x], [radius, radius + 2 * size], color=_SEAL, lw=3.0, zorder=4)
         ax.plot([x, x], [-radius, -radius - 2 * size], color=_SEAL, lw=3.0, zorder=4)
     for at in dict.fromkeys(entry.at for entry in machine.probe):
-        x, radius = at * _MILLI, _outermost(beam, at) * _MILLI
+        x, radius = at * _LENGTH.factor, _outermost(beam, at) * _LENGTH.factor
         ax.annotate(
             "", (x, radius), (x, radius + 3.5 * size), zorder=5, annotation_clip=False,
             arrowprops={"arrowstyle": "-|>", "color": "#0072B2", "lw": 1.2},
@@ -58,11 +59,12 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
         named = [one.name for one in machine.probe if one.at == at and one.name]
         _label(ax, x, radius + 3.7 * size, "\n".join(named), "#0072B2", "bottom")
     for entry in machine.rotor.unbalance:
-        ax.plot(entry.at * _MILLI, 0.0, "o", color="k", ms=4.5, zorder=6)
+        ax.plot(entry.at * _LENGTH.factor, 0.0, "o", color="k", ms=4.5, zorder=6)
     _key(ax, machine)
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(visible=False)
-    ax.set(xlabel="from the left end [mm]", ylabel="radius [mm]", title=caption(title))
+    ax.set(xlabel=axis_title("from the left end", "mm"), ylabel=axis_title("radius", "mm"),
+           title=caption(title))  # fmt: skip
     ax.margins(0.04, 0.22)
     return figure_of(ax)
 
@@ -70,8 +72,8 @@ def rotor_drawing(machine: MachineFile, title: str = "", ax: Axes | None = None)
 def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
     left, right = beam.span(section)
     ends = np.array([left, right])
-    inner, outer = (part * _MILLI for part in beam.at(ends, section))
-    z = ends * _MILLI
+    inner, outer = (part * _LENGTH.factor for part in beam.at(ends, section))
+    z = ends * _LENGTH.factor
     face = _SLEEVE if section.layer > 1 else _SHAFT
     hatch = "////" if not section.stiffness else None
     halves = (-1.0, 1.0) if inner.any() else (0.0,)
@@ -85,21 +87,21 @@ def _draw_section(ax: Axes, beam: Beam, section: Section) -> None:
 
 
 def _draw_disc(ax: Axes, disc: Disc, beam: Beam, top: float) -> None:
-    x = disc.at * _MILLI
+    x = disc.at * _LENGTH.factor
     if disc.has_size:
         outer, width = beam.disc_size(disc)
         shaft = beam.outer_radius(disc.at)
         for low in (shaft, -outer):
-            box = (x - 0.5 * width * _MILLI, low * _MILLI)
-            height = (outer - shaft) * _MILLI
+            box = (x - 0.5 * width * _LENGTH.factor, low * _LENGTH.factor)
+            height = (outer - shaft) * _LENGTH.factor
             ax.add_patch(
-                Rectangle(box, width * _MILLI, height, fc=_DISC, ec="0.2", lw=0.8, zorder=2)
+                Rectangle(box, width * _LENGTH.factor, height, fc=_DISC, ec="0.2", lw=0.8, zorder=2)
             )
-        ax.update_datalim([(x, -1.15 * outer * _MILLI), (x, outer * _MILLI)])
-        _label(ax, x, -1.03 * outer * _MILLI, disc.name, "0.2", "top")
+        ax.update_datalim([(x, -1.15 * outer * _LENGTH.factor), (x, outer * _LENGTH.factor)])
+        _label(ax, x, -1.03 * outer * _LENGTH.factor, disc.name, "0.2", "top")
     else:
         ax.plot(x, 0.0, "s", color=_DISC, mec="0.2", ms=8, ls="", zorder=6)
-        _label(ax, x, -1.03 * top * _MILLI, disc.name, "0.2", "top")
+        _label(ax, x, -1.03 * top * _LENGTH.factor, disc.name, "0.2", "top")
 
 
 def _outermost(beam: Beam, at: float) -> float:

@@ -16,8 +16,6 @@ from ...study.hot_spot import HotSpotStudy
 from ...text import caption
 from .style import MICRO, figure_of, mark_range, new_axes, series_style
 
-_MILLI = 1e3
-
 
 def bode_at_probes(
     responses: Sequence[ProbeResponse],
@@ -64,22 +62,22 @@ def control_traces(passive: LinearMotion, controlled: LinearMotion, title: str =
     """Draw displacement at the first sensor without and with control, and the force."""
     figure, axes = new_axes(2, 1, (6.6, 5.0), title, sharex=True)
     upper, lower = axes[:, 0]
-    reach = 1.3 * np.abs(controlled.displacement[:, 0]).max() * MICRO
+    reach = 1.3 * in_shown_unit(np.abs(controlled.displacement[:, 0]).max() * MICRO, "µm")
     for name, run, look in (
         ("without control", passive, {"color": "0.55", "lw": 0.8}),
         ("with control", controlled, {"color": "#0072B2", "lw": 1.1}),
     ):
-        shown = run.displacement[:, 0] * MICRO
-        upper.plot(run.t * _MILLI, shown, label=name, **look)
+        shown = in_shown_unit(run.displacement[:, 0] * MICRO, "µm")
+        upper.plot(run.t * 1e3, shown, label=name, **look)
         reach = max(reach, min(1.1 * float(np.abs(shown).max()), 3.0 * reach))
-    upper.set(ylabel="x at the sensor [µm]", ylim=(-reach, reach))
+    upper.set(ylabel=axis_title("x at the sensor", "µm"), ylim=(-reach, reach))
     upper.legend(loc="upper right")
     for number, word in enumerate("xy"):
         lower.plot(
-            controlled.t * _MILLI, controlled.force[:, number], label=word,
+            controlled.t * 1e3, in_shown_unit(controlled.force[:, number], "N"), label=word,
             **dict(series_style("", number), linewidth=1.0),
         )  # fmt: skip
-    lower.set(xlabel="time [ms]", ylabel="force at the actuator [N]")
+    lower.set(xlabel="time [ms]", ylabel=axis_title("force at the actuator", "N"))
     lower.legend(loc="upper right")
     return figure
 
@@ -96,9 +94,11 @@ def hot_spot_loop(study: HotSpotStudy, title: str = "") -> Figure:
     above.set(ylabel="gain [-]", title=caption(title))
     for number, name in enumerate(study.names):
         look = series_style("", number)
-        middle.plot(speed, 2.0 * np.abs(loop.temperature[:, number]), label=name, **look)
+        middle.plot(
+            speed, in_shown_unit(2.0 * np.abs(loop.temperature[:, number]), "K"), label=name, **look
+        )
         below.plot(study.films.speed * RPM, np.degrees(study.lag[:, number]), label=name, **look)
-    middle.set(ylabel="warm less cold side [K]", ylim=(0.0, None))
+    middle.set(ylabel=axis_title("warm less cold side", "K"), ylim=(0.0, None))
     below.set(ylabel="hot behind high spot [°]", xlabel="speed [rpm]")
     for ax in (above, middle):
         ax.legend(loc="best")

@@ -24,10 +24,9 @@ from ...orbit.description import run_names, run_title
 from ...orbit.motion import Motion
 from ...orbit.spectrum import Cascade
 from ...rotor import Rotor
-from ...rows import QUANTITIES
+from ...rows import QUANTITIES, axis_title, quantity
 from ...text import caption
 from .style import (
-    MICRO,
     MODEL_STYLES,
     RPM,
     SETTINGS,
@@ -40,6 +39,8 @@ from .style import (
 )
 
 Array = NDArray[np.float64]
+_SMALL = QUANTITIES["radial_clearance"]
+_LENGTH = quantity("length", "m")
 _LINES = ("#0072B2", "#009E73", "#CC79A7")
 
 
@@ -63,15 +64,15 @@ def orbit_plot(
             _draw(ax, orbit, name, steady_only)
         above.set_aspect("equal", adjustable="box")
         above.set(xlim=(-reach, reach), ylim=(-reach, reach))
-        clearance = QUANTITIES["radial_clearance"].said(orbit.radial_clearance)
+        clearance = _SMALL.said(orbit.radial_clearance)
         above.set_title(f"{caption(run_title(name))}\nclearance {clearance}")
         below.set_aspect("equal", adjustable="datalim")
         below.set_title("close-up")
         below.locator_params(nbins=5)
     for ax in axes.flat:
-        ax.set_xlabel("x (along the load) [µm]")
+        ax.set_xlabel(axis_title("x (along the load)", "µm"))
     for ax in axes[:, 0]:
-        ax.set_ylabel("y [µm]")
+        ax.set_ylabel(axis_title("y", "µm"))
     return figure
 
 
@@ -83,7 +84,7 @@ def orbit_path(orbit: Orbit, title: str = "", ax: Axes | None = None) -> Figure:
     ax.set_aspect("equal", adjustable="box")
     ax.set(
         xlim=(-reach, reach), ylim=(-reach, reach), title=caption(title),
-        xlabel="x (along the load) [µm]", ylabel="y [µm]",
+        xlabel=axis_title("x (along the load)", "µm"), ylabel=axis_title("y", "µm"),
     )  # fmt: skip
     return figure_of(ax)
 
@@ -132,7 +133,7 @@ def spectrum_cascade(
         legend.set_zorder(rows.size + 3)
     right = hertz[:, -1].max()
     ax.set_xlim(0.0, min(right, 2.0 * rpm[-1] / 60.0))
-    words = [caption(title), f"highest peak {largest * MICRO:.3g} µm"]
+    words = [caption(title), f"highest peak {_SMALL.with_unit(largest, 3)}"]
     ax.set(
         xlabel="frequency [Hz]", ylabel="shaft speed [rpm]", title="\n".join(filter(None, words))
     )
@@ -157,18 +158,18 @@ def spectrum_plot(orbits: Sequence[Orbit], title: str = "") -> Figure | None:
     for number, (name, speed, one, amplitude) in enumerate(found):
         peak = int(np.argmax(amplitude))
         label = (
-            f"{run_title(name)}: {amplitude[peak] * MICRO:.3g} µm at "
+            f"{run_title(name)}: {_SMALL.with_unit(amplitude[peak], 3)} at "
             f"{one.frequency[peak] / (2.0 * np.pi):.4g} Hz, {one.frequency[peak] / speed:.3f}x"
         )
         look: dict[str, Any] = series_style(_model(name), number) | {"label": label}
-        ax.plot(one.frequency / (2.0 * np.pi), amplitude * MICRO, **look)
+        ax.plot(one.frequency / (2.0 * np.pi), amplitude * _SMALL.factor, **look)
     for order in (1.0, 0.5):
         ax.axvline(order * shaft, color="0.4", linewidth=0.8, zorder=0)
         ax.annotate(
             f"{order:g}x", (order * shaft, 1.0), xycoords=("data", "axes fraction"),
             xytext=(3, -10), textcoords="offset points", fontsize=8,
         )  # fmt: skip
-    ax.set(xlabel="frequency [Hz]", ylabel="amplitude [µm]", title=caption(title))
+    ax.set(xlabel="frequency [Hz]", ylabel=axis_title("amplitude", "µm"), title=caption(title))
     ax.set_xlim(0.0, 2.5 * shaft)
     ax.set_ylim(bottom=0.0)
     figure = figure_of(ax)
@@ -203,25 +204,25 @@ def bode_plot(
 
 def _draw_contact(ax: Axes, orbit: Orbit) -> float:
     """Draw the line on which journal and bush touch; give how far it reaches [µm]."""
-    line = orbit.boundary * MICRO
+    line = orbit.boundary * _SMALL.factor
     ax.plot(*line.T, color="k", linewidth=1.2)
     return float(np.hypot(*line.T).max())
 
 
 def _draw(ax: Axes, orbit: Orbit, name: str, steady_only: bool) -> None:
     """Draw the path, its steady part strong, and its points at whole turns."""
-    x, y = orbit.x * MICRO, orbit.y * MICRO
+    x, y = orbit.x * _SMALL.factor, orbit.y * _SMALL.factor
     start = (recognise(orbit).steady_from if orbit.constant_speed else None) or 0
     if start and not steady_only:
         ax.plot(x[: start + 1], y[: start + 1], color="0.7", linewidth=0.6)
     ax.plot(x[start:], y[start:], color=model_style(_model(name))["color"], linewidth=0.9)
     points = once_per_turn(orbit)
     if points is not None:
-        ax.plot(*(points.T * MICRO), ".", color="#D55E00", ms=2)
+        ax.plot(*(points.T * _SMALL.factor), ".", color="#D55E00", ms=2)
     first = start if steady_only else 0
     ax.plot(x[first], y[first], "o", color="k", mfc="w", ms=4)
     ax.plot(x[-1], y[-1], "o", color="k", ms=4)
-    ax.plot(*(np.asarray(orbit.equilibrium) * MICRO), "+", color="k", ms=8)
+    ax.plot(*(np.asarray(orbit.equilibrium) * _SMALL.factor), "+", color="k", ms=8)
 
 
 def _model(name: str) -> str:
@@ -234,7 +235,7 @@ def branch_plot(branch: Branch, title: str = "", ax: Axes | None = None) -> Figu
     ax = axes_or_new(ax, (6.4, 4.4))
     rpm = branch.speed * RPM
     for column, name in enumerate(branch.names):
-        amplitude = branch.amplitude[:, column] * MICRO
+        amplitude = branch.amplitude[:, column] * _SMALL.factor
         colour = f"C{column}"
         for word, shown, style in (
             ("stable", branch.stable, "-"), ("unstable", ~branch.stable, "--")
@@ -251,7 +252,7 @@ def branch_plot(branch: Branch, title: str = "", ax: Axes | None = None) -> Figu
         )  # fmt: skip
     for fold in branch.folds:
         ax.axvline(fold * RPM, color="#D55E00", lw=0.8, ls=":")
-    ax.set(xlabel="shaft speed [rpm]", ylabel="amplitude [µm]", title=caption(title))
+    ax.set(xlabel="shaft speed [rpm]", ylabel=axis_title("amplitude", "µm"), title=caption(title))
     ax.set_ylim(bottom=0.0)
     ax.legend(fontsize=8)
     return figure_of(ax)
@@ -311,7 +312,7 @@ def animate_machine(
     """
     target = Path(path)
     writer = _writer(target)
-    z = np.array([node.position for node in rotor.nodes]) * 1e3
+    z = np.array([node.position for node in rotor.nodes]) * _LENGTH.factor
     turns = motion.revolutions
     wanted = np.linspace(
         max(float(turns[-1]) - _SLOW_FRAMES / _SLOW_FRAMES_PER_REVOLUTION, 0.0), float(turns[-1]),
@@ -334,7 +335,7 @@ def animate_machine(
     figure = Figure(figsize=(8.0, 4.2))
     ax: Any = figure.add_subplot(projection="3d")
     (line,) = ax.plot([], [], [], color="0.35", linewidth=5, solid_capstyle="round")
-    nodes = [int(np.argmin(np.abs(z - 1e3 * s.position))) for s in motion.stations
+    nodes = [int(np.argmin(np.abs(z - _LENGTH.factor * s.position))) for s in motion.stations
              if np.isfinite(s.position)]  # fmt: skip
     paths = [ax.plot([], [], [], color="#D55E00", linewidth=1.2)[0] for _ in nodes]
     (marks,) = ax.plot([], [], [], "o", color="#0b3c5d", markersize=5)
@@ -342,7 +343,7 @@ def animate_machine(
     middle_x, middle_y = scale * float(x.mean()), scale * float(y.mean())
     ax.set(
         xlim=(z[0], z[-1]), ylim=(middle_y - reach, middle_y + reach),
-        zlim=(-middle_x - reach, -middle_x + reach), xlabel="along the shaft [mm]",
+        zlim=(-middle_x - reach, -middle_x + reach), xlabel=axis_title("along the shaft", "mm"),
     )  # fmt: skip
     ax.set_box_aspect((2.4, 1.0, 1.0))
     ax.set_yticklabels([])
@@ -359,7 +360,7 @@ def animate_machine(
                 )
             ax.set_title(
                 f"{caption(title)}\n{motion.speed[at] * RPM:.0f} rpm, turn {turns[at]:.1f}, "
-                f"displacements {scale / 1e3:.3g} times", fontsize=9,
+                f"displacements {scale / _LENGTH.factor:.3g} times", fontsize=9,
             )  # fmt: skip
             writer.grab_frame()
     return target
@@ -389,13 +390,13 @@ class _Scene:
 
     def __init__(self, above: Axes, below: Axes, orbit: Orbit, name: str) -> None:
         self.orbit, self.title = orbit, run_title(name)
-        self.x, self.y = orbit.x * MICRO, orbit.y * MICRO
+        self.x, self.y = orbit.x * _SMALL.factor, orbit.y * _SMALL.factor
         self.colour = model_style(orbit.thermal_model)["color"]
         force = np.column_stack([orbit.fx, orbit.fy])
         size = np.hypot(*force.T)
         middle = max(float(np.median(size)), 1e-30)
         limit = np.minimum(1.0, 2.0 * middle / np.maximum(size, 1e-30))
-        scale = _FORCE_LENGTH * orbit.radial_clearance * MICRO / middle
+        scale = _FORCE_LENGTH * orbit.radial_clearance * _SMALL.factor / middle
         self.arrows = force * (limit * scale)[:, None]
         self._above(above)
         self._below(below)
@@ -441,11 +442,10 @@ class _Scene:
         )
 
     def _above(self, ax: Axes) -> None:
-        clearance = self.orbit.radial_clearance * MICRO
         reach = _draw_contact(ax, self.orbit)
         (self.past,) = ax.plot([], [], color="0.8", linewidth=0.6)
         (self.trail,) = ax.plot([], [], color=self.colour, linewidth=1.3)
-        ax.plot(*(np.asarray(self.orbit.equilibrium) * MICRO), "+", color="k", ms=8)
+        ax.plot(*(np.asarray(self.orbit.equilibrium) * _SMALL.factor), "+", color="k", ms=8)
         self.force = FancyArrowPatch(
             (0.0, 0.0), (1.0, 0.0), arrowstyle="-|>", mutation_scale=9, color="#009E73", lw=1.2
         )
@@ -454,10 +454,10 @@ class _Scene:
         ax.set_aspect("equal", adjustable="box")
         ax.set_xlim(-1.12 * reach, 1.12 * reach)
         ax.set_ylim(-1.12 * reach, 1.12 * reach)
-        ax.set(xlabel="x (along the load) [µm]", ylabel="y [µm]")
+        ax.set(xlabel=axis_title("x (along the load)", "µm"), ylabel=axis_title("y", "µm"))
         self.words = ax.set_title("turn")
         ax.text(
-            0.02, 0.98, f"{caption(self.title)}\nc = {clearance:.4g} µm",
+            0.02, 0.98, f"{caption(self.title)}\n{_SMALL.said(self.orbit.radial_clearance)}",
             transform=ax.transAxes, va="top", fontsize=8,
         )  # fmt: skip
         ax.plot([], [], color="#009E73", label="film force")
@@ -470,5 +470,7 @@ class _Scene:
         ax.plot(turns[rows], self.x[rows], color=self.colour, linewidth=0.6, label="x")
         ax.plot(turns[rows], self.y[rows], color="0.55", linewidth=0.6, label="y")
         self.cursor = ax.axvline(turns[0], color="k", linewidth=0.9)
-        ax.set(xlabel="turns of the shaft", ylabel="x, y [µm]", xlim=(turns[0], turns[-1]))
+        ax.set(
+            xlabel="turns of the shaft", ylabel=axis_title("x, y", "µm"), xlim=(turns[0], turns[-1])
+        )
         ax.legend(loc="upper left", ncols=2)

@@ -16,7 +16,7 @@ from ...bearing.operating_point import FilmFields, OperatingPoint, PadResult
 from ...errors import InputError
 from ...film.geometry import pad_face
 from ...model import Bearing, Pad
-from ...rows import RPM, ZERO_CELSIUS, number
+from ...rows import RPM, ZERO_CELSIUS, axis_title, in_shown_unit, number, with_unit
 from .style import MEGA, model_label, new_axes
 
 Array = NDArray[np.float64]
@@ -44,16 +44,16 @@ def pad_sections(points: Sequence[OperatingPoint], bearing: Bearing, title: str 
     columns = 2 if any(warm) else 1
     size = (5.2 * columns, 0.4 + 4.8 * len(films))
     figure, axes = new_axes(len(films), columns, size, title)
-    top = max(float(film.pressure.max()) for film in films) * MEGA
+    top = in_shown_unit(max(float(film.pressure.max()) for film in films) * MEGA, "MPa")
     for row, point, film, heated in zip(axes, points, films, warm, strict=True):
         middle = int(np.abs(film.y).argmin())
         name = f"{model_label(point.thermal_model)}, {point.speed * RPM:.0f} rpm"
-        pressure = film.pressure[:, middle] * MEGA
-        shown = [(row[0], pressure, (0.0, top or 1.0), "viridis", "pressure [MPa]")]
+        pressure = in_shown_unit(film.pressure[:, middle] * MEGA, "MPa")
+        shown = [(row[0], pressure, (0.0, top or 1.0), "viridis", axis_title("pressure", "MPa"))]
         if heated:
-            mean = film.temperature[:, middle].mean(axis=1) - ZERO_CELSIUS
+            mean = in_shown_unit(film.temperature[:, middle].mean(axis=1) - ZERO_CELSIUS, "°C")
             span = float(mean.min()), float(mean.max())
-            shown.append((row[1], mean, span, "inferno", "mean across the film [°C]"))
+            shown.append((row[1], mean, span, "inferno", axis_title("mean across the film", "°C")))
         for ax in row[len(shown) :]:
             ax.set_axis_off()
         for ax, values, span, colours, label in shown:
@@ -124,7 +124,8 @@ class _Section:
         ax.add_patch(Polygon(_seen(outline), **look))
         towards = _unit(np.array([pad.pivot_angle]))[0]
         ax.plot(*_seen(back * towards), "^", color="0.3", markersize=4)
-        text = f"{place + 1}: {number(state.load / 1e3, 3)} kN\n{number(state.tilt * 1e3, 3)} mrad"
+        text = f"{place + 1}: {with_unit(state.load / 1e3, 'kN', 3)}\n"
+        text += f"{number(state.tilt * 1e3, 3)} mrad"
         if state.unloaded:
             text = f"{place + 1}: unloaded"
         side = float(towards[1])

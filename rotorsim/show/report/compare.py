@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...bearing.description import curve_title, point_text
-from ...rows import QUANTITIES, RPM, number, table_html
+from ...rows import QUANTITIES, RPM, heads, in_shown_unit, number, table_html
 from ...study import machine_tables as tables
 from ...study.inputs import input_rows
 from . import html
@@ -83,8 +83,8 @@ def _machine_rows(result: MachineResult) -> Iterator[tuple[str, float, str]]:
     )  # fmt: skip
     yield "growth rate at the highest speed 1/s", rate, number(rate)
     for state in result.supports:
-        load = float(np.hypot(*state.load[-1])) / 1e3
-        yield f"load on {state.name} kN", load, number(load)
+        load = in_shown_unit(float(np.hypot(*state.load[-1])) / 1e3, "kN")
+        yield heads(f"load on {state.name} kN")[0], load, number(load)
 
 
 def _paired(mine: Iterable, theirs: Iterable) -> Iterator[tuple]:

@@ -176,8 +176,8 @@ def _rotor(last: MachineResult) -> str:
         Row("length", with_unit(beam.length * 1e3, "mm")),
         Row("mass", with_unit(rotor.total_mass, "kg")),
         Row("elements", f"{len(rotor.nodes) - 1}, {'Timoshenko' if beam.shear else 'Rayleigh'}"),
-        Row("Young's modulus", f"{number(beam.material.youngs_modulus / 1e9)} GPa"),
-        Row("density", f"{number(beam.material.density)} kg/m³"),
+        Row("Young's modulus", with_unit(beam.material.youngs_modulus / 1e9, "GPa")),
+        Row("density", with_unit(beam.material.density, "kg/m³")),
         Row("rotation from the left", "clockwise" if beam.clockwise else "counterclockwise"),
         Row("internal damping", f"{number(beam.internal_damping * 1e6)} µs"),
         Row("axial force", with_unit(beam.axial_force / 1e3, "kN")),
@@ -202,8 +202,7 @@ def _shaft_tables(last: MachineResult) -> str:
     head = heads("section", "from mm", "length mm", "outer mm", "inner mm", "layer")
     discs = [
         (one.name or "-", shown(one.at * 1e3, "mm"), shown(one.mass, "kg"),
-         number(one.polar_inertia),
-         number(one.transverse_inertia))
+         shown(one.polar_inertia, "kg m²"), shown(one.transverse_inertia, "kg m²"))
         for one in beam.discs
     ]  # fmt: skip
     wide = [table_html(head, sections, "Sections", texts=0)]

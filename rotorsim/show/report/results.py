@@ -15,7 +15,7 @@ from ...bearing.description import (
     point_text,
 )
 from ...orbit.description import ORBIT_HEADS, describe_orbit, orbit_texts
-from ...rows import QUANTITIES, RPM, number, table_html
+from ...rows import QUANTITIES, RPM, heads, number, shown, table_html
 from ...study.measured import deviation_rows, deviations
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def margins(curves: Sequence[StabilityCurve]) -> str:
         return ""
     rotor, mass = curves[0].rotor, curves[0].mass
     top = curves[0].speed[-1] * RPM
-    head = ["bearing", "M crit kg", "M c ω²/W", "whirl ratio"]
+    head = ["bearing", *heads("M crit kg"), "M c ω²/W", "whirl ratio"]
     if rotor:
         head += ["verdict", "threshold rpm", "growth 1/s", "log. decrement"]
     if mass is not None:
@@ -104,7 +104,7 @@ def _margin_row(curve: StabilityCurve) -> list[str]:
     critical = float(curve.critical_mass[-1])
     row = [
         curve.title,
-        number(critical) if math.isfinite(critical) else _verdict_words(curve),
+        shown(critical, "kg") if math.isfinite(critical) else _verdict_words(curve),
         number(float(curve.critical_mass_dimensionless[-1])),
         number(float(curve.whirl_frequency_ratio[-1]), 3),
     ]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ...bearing.description import point_text, point_title
-from ...rows import RPM
+from ...bearing.description import point_title
+from ...rows import QUANTITIES, RPM
 from . import html
 
 if TYPE_CHECKING:
@@ -68,10 +68,10 @@ def _extremes(points: Sequence[OperatingPoint]) -> str:
     if not known:
         return ""
     thin = min(known, key=lambda point: point.min_film_thickness)
-    text = f" Thinnest film {point_text(thin, 'min_film_thickness')} µm ({point_title(thin)})"
+    thinnest, hottest = QUANTITIES["min_film_thickness"], QUANTITIES["max_temperature"]
+    text = f" Thinnest film {thinnest.with_unit(thin.min_film_thickness, 3)} ({point_title(thin)})"
     heated = [point for point in known if point.heat_balance is not None]
     if not heated:
         return f"{text}; heating was not computed."
     hot = max(heated, key=lambda point: point.max_temperature)
-    hottest = point_text(hot, "max_temperature")
-    return f"{text}, hottest oil {hottest} °C ({point_title(hot)})."
+    return f"{text}, hottest oil {hottest.with_unit(hot.max_temperature, 3)} ({point_title(hot)})."
