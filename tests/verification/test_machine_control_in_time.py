@@ -1,0 +1,224 @@
+"""Controllers of a machine in time: against the whole linear machine, and on nonlinear films."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import rotorsim as rs
+from rotorsim.errors import InputError
+from rotorsim.files.machine import MachineFile
+from rotorsim.machine.output_feedback import run_in_time
+from rotorsim.study.machine_control import designed_feedback
+from rotorsim.study.machines import assembled
+from rotorsim.study.motion_results import motion_document
+
+SPEED = 9000.0 * np.pi / 30.0
+TEXT = """
+title = "overhung rotor that internal damping makes unstable"
+[rotor]
+kind = "beam"
+internal_damping = "2e-5 s"
+[[rotor.section]]
+elements = {elements}
+length = "1.2 m"
+outer_diameter = "60 mm"
+[[rotor.disc]]
+name = "wheel"
+at = "0.5 m"
+mass = "40 kg"
+polar_inertia = "0.4 kg*m^2"
+transverse_inertia = "0.25 kg*m^2"
+[[rotor.disc]]
+name = "overhung"
+at = "1.2 m"
+mass = "10 kg"
+polar_inertia = "0.1 kg*m^2"
+transverse_inertia = "0.06 kg*m^2"
+[[support]]
+at = "0 mm"
+stiffness = ["20 MN/m", "15 MN/m"]
+damping = "2 kN*s/m"
+[[support]]
+at = "1 m"
+stiffness = "20 MN/m"
+damping = "2 kN*s/m"
+[operating]
+speed = "9000 rpm"
+[control]
+actuator = ["250 mm"]
+sensor = ["overhung"]
+force_scale = "500 N"
+"""
+ORBIT = """
+[orbit]
+control = true
+revolutions = 40
+gravity = false
+unbalance = false
+initial_displacement = ["5 um", "0 um"]
+"""
+
+
+def machine(more: str = "", orbit: str = ORBIT, elements: int = 6) -> MachineFile:
+    return MachineFile.from_text(TEXT.format(elements=elements) + more + orbit)
+
+
+def whole(found: MachineFile):
+    """Return the unreduced machine from the actuators to the sensors, its feedback, its start."""
+    feedback, built = designed_feedback(found, SPEED), assembled(found)
+    system = rs.state_space(built, speed=SPEED)
+    start = np.zeros(system.nstates)
+    for k, (_, unknown) in enumerate(built.rotor.unknowns):
+        start[k] = 5e-6 * (unknown == "x")
+    return system[list(feedback.sensors), list(feedback.actuators)], feedback, start
+
+
+def at_the_sensor(motion) -> np.ndarray:
+    orbit = motion.orbit("overhung")
+    return np.column_stack([orbit.x, orbit.y]) - orbit.equilibrium
+
+
+@pytest.mark.parametrize("elements", [6, 24], ids=["whole", "reduced"])
+@pytest.mark.parametrize(
+    "more", ["", 'sample_time = "100 us"\ndelay = "60 us"\n'], ids=["continuous", "sampled"]
+)
+@pytest.mark.slow
+def test_motion_is_that_of_the_whole_linear_machine(more, elements):
+    found = machine(more, elements=elements)
+    system, feedback, start = whole(found)
+    motion = rs.simulate(found)
+    assert motion.problem.reduction_error < 1e-4
+    step = feedback.sample_time / 4 or (motion.t[1] - motion.t[0]) / 8
+    exact = run_in_time(system, start, motion.t[-1], step, feedback)
+    scale = np.abs(exact.displacement).max()
+    for axis in (0, 1):
+        there = np.interp(motion.t, exact.t, exact.displacement[:, axis])
+        assert np.abs(at_the_sensor(motion)[:, axis] - there).max() < 5e-4 * scale
+    # alone it grows, with the controller it comes to rest
+    assert np.asarray(system.poles()).real.max() > 0.0
+    assert np.abs(at_the_sensor(motion)[-64:]).max() < 1e-4 * scale
+    largest = max(one["largest_force"] for one in motion_document(motion)["actuators"])
+    assert largest == pytest.approx(np.abs(exact.force).max(), rel=5e-3)
+
+
+@pytest.mark.slow
+def test_saturation_against_an_independent_integration():
+    found = machine('max_force = "20 N"\n')
+    system, feedback, start = whole(found)
+    motion = rs.simulate(found)
+    a, b, c = (np.asarray(part) for part in (system.A, system.B, system.C))
+    n = len(a)
+
+    def rate(_t: float, state: np.ndarray) -> np.ndarray:
+        x, z = state[:n], state[n:]
+        wanted = feedback.c @ z + feedback.d @ (c @ x)
+        force = np.clip(wanted, -20.0, 20.0)
+        inner = feedback.a @ z + feedback.b @ (c @ x) + feedback.w @ (force - wanted)
+        return np.concatenate([a @ x + b @ force, inner])
+
+    first = np.concatenate([start, np.zeros(len(feedback.a))])
+    run = solve_ivp(rate, (0.0, motion.t[-1]), first, "LSODA", motion.t, rtol=1e-8, atol=1e-12)
+    apart = np.abs(at_the_sensor(motion) - (c @ run.y[:n]).T).max()
+    assert apart < 5e-4 * np.abs(c @ run.y[:n]).max()
+    (x, _) = motion_document(motion)["actuators"]
+    assert x["largest_force"] == pytest.approx(20.0)
+    assert 0.05 < x["saturated"] < 0.5
+    # the orbit of the actuator's place has its force, that of another none
+    assert np.abs(motion.actuator_force).max() == pytest.approx(20.0)
+    assert not motion.orbit("wheel").actuator_force.any()
+
+
+FILMS = (
+    TEXT[: TEXT.index("[[support]]")].format(elements=8)
+    + """
+[[support]]
+name = "left"
+at = "0 mm"
+bearing = "left.toml"
+[[support]]
+name = "right"
+at = "1 m"
+bearing = "left.toml"
+[operating]
+speed = { start = "3000 rpm", stop = "9000 rpm", count = 4 }
+[control]
+actuator = ["wheel"]
+sensor = ["overhung"]
+force_scale = "500 N"
+sample_time = "100 us"
+delay = "50 us"
+speed = "9000 rpm"
+"""
+)
+BEARING = """
+[bearing]
+journal_radius = "30 mm"
+length = "30 mm"
+radial_clearance = "60 um"
+[lubricant]
+viscosity = "0.02 Pa*s"
+density = "860 kg/m^3"
+specific_heat = "2000 J/(kg*delta_degC)"
+thermal_conductivity = "0.13 W/(m*delta_degC)"
+[film]
+cavitation = "half_sommerfeld"
+inception = "free"
+mesh = { circumferential = 64, axial = 16, cross_film = 8 }
+[thermal]
+models = "isothermal"
+[operating]
+speed = "9000 rpm"
+load = "300 N"
+"""
+
+
+@pytest.mark.slow
+def test_a_controller_holds_a_rotor_on_nonlinear_films_and_loses_it_with_less_force(tmp_path):
+    (tmp_path / "left.toml").write_text(BEARING)
+    path = tmp_path / "rotor.toml"
+
+    def run(control: str, limit: str = "", push: str = "2 um", revolutions: int = 60):
+        path.write_text(
+            FILMS + limit + f'[orbit]\ncontrol = {control}\nforce = "mapped"\nspeed = "9000 rpm"\n'
+            f'revolutions = {revolutions}\ninitial_displacement = ["{push}", "0 um"]\n'
+        )
+        return rs.simulate(rs.load_machine(path))
+
+    def size(motion) -> np.ndarray:
+        orbit = motion.orbit("left")
+        return np.hypot(orbit.x - orbit.equilibrium[0], orbit.y - orbit.equilibrium[1])
+
+    alone, held = run("false"), run("true")
+    assert size(alone)[-640:].max() > 3.0 * size(alone)[:640].max()
+    assert size(held)[-640:].max() < 1e-2 * size(held)[:640].max()
+    lost = run("true", 'max_force = "2 N"\n', "20 um", 120)
+    assert size(lost)[-640:].max() > 0.3 * size(lost)[:640].max()
+    assert max(one["saturated"] for one in motion_document(lost)["actuators"]) > 0.5
+
+
+def test_what_cannot_be_is_refused_with_its_key():
+    def key(found: MachineFile, **options) -> tuple[str | None, str]:
+        with pytest.raises(InputError) as caught:
+            rs.simulate(found, **options)
+        return caught.value.key, str(caught.value)
+
+    without = machine()
+    bare = MachineFile.from_text(TEXT.format(elements=6).split("[control]")[0] + ORBIT)
+    assert key(bare)[0] == "control"
+    assert key(without, controller="pd")[0] == "controller"
+    other = replace(designed_feedback(without, SPEED), sensors=("no_such_displacement_x",) * 2)
+    where, said = key(without, controller=other)
+    assert where == "controller.sensors"
+    assert "overhung_displacement_x" in said or "displacement" in said
+    with pytest.raises(InputError, match="goes with a sample_time"):
+        machine('delay = "60 us"\n')
+    with pytest.raises(InputError, match="above 0"):
+        machine('sample_time = "0 us"\n')
+    driven = ORBIT.replace("revolutions = 40", "").replace(
+        "initial", 'drive = { start = "9000 rpm", duration = "0.1 s", torque = "1 N*m" }\ninitial'
+    )
+    assert key(machine('sample_time = "100 us"\n', driven))[0] == "controller.sample_time"
