@@ -232,7 +232,8 @@ class Motion:
         """Return the motion of one station for analysis, figures and recordings of an `Orbit`.
 
         In a film it is relative to the housing, with the film's force; elsewhere it is that of
-        the shaft's centre, without a force.
+        the shaft's centre, without a film's force, and the boundary is a circle of the films'
+        least clearance around its rest, for scale.
         """
         station, system = self.station(name), self.problem.system
         links = [link for link in system.links if link.film]
@@ -252,12 +253,13 @@ class Motion:
             home = system.basis[rows] @ self.problem.equilibrium + system.offset[rows]
             clearance = clearance or max(float(np.abs(place - home).max(initial=0.0)), 1e-9)
         turn = np.linspace(0.0, 2.0 * math.pi, 361)
+        middle = np.zeros(2) if station.link is not None else home
         x, y, vx, vy = (np.ascontiguousarray(column) for column in motion[:, :4].T)
         return Orbit(
             t=self.t, x=x, y=y, vx=vx, vy=vy, speed=self.speed, angle=self.angle,
             fx=force[:, 0], fy=force[:, 1], load=zero, actuator_force=self._actuator_at(rows),
-            displacements=motion[:, :2], min_film=clearance - np.hypot(x, y),
-            boundary=clearance * np.column_stack([np.cos(turn), np.sin(turn)]),
+            displacements=motion[:, :2], min_film=clearance - np.hypot(x - middle[0], y - middle[1]),
+            boundary=middle + clearance * np.column_stack([np.cos(turn), np.sin(turn)]),
             samples_per_revolution=self.problem.samples_per_revolution,
             radial_clearance=clearance, equilibrium=(float(home[0]), float(home[1])),
             force_model=system.links[station.link].force.name if station.link is not None

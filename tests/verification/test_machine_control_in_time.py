@@ -130,6 +130,9 @@ def test_saturation_against_an_independent_integration():
     # the orbit of the actuator's place has its force, that of another none
     assert np.abs(motion.actuator_force).max() == pytest.approx(20.0)
     assert not motion.orbit("wheel").actuator_force.any()
+    # a place without a film is shown within a circle around its rest
+    free = motion.orbit("overhung")
+    np.testing.assert_allclose(free.boundary[:-1].mean(axis=0), free.equilibrium, atol=1e-12)
 
 
 FILMS = (
