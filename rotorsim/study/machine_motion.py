@@ -50,15 +50,23 @@ def simulate(
 ) -> Motion:
     """Integrate a machine's motion in time.
 
-    machine : With ``[orbit]``.
-    orbit : In place of the file's.
-    problem : From `motion_problem`, where it is there already.
-    result : The machine's films over speed, where they are solved already.
-    controller : From sensors to actuators at any nodes, about the static position at the first
-        speed: an `OutputFeedback`, or a continuous or sampled system of python-control whose
-        signals are named as those of `rotorsim.state_space` (see `OutputFeedback.of`). By default
-        that of the file's ``[control]`` where ``orbit.control`` is set.
-    consume : Called with each piece of some revolutions as soon as it is there.
+    Parameters
+    ----------
+    machine : MachineFile
+        With ``[orbit]``.
+    orbit : MachineOrbit, optional
+        In place of the file's.
+    problem : MotionProblem, optional
+        From `motion_problem`, where it is there already.
+    result : MachineResult, optional
+        The machine's films over speed, where they are solved already.
+    controller : OutputFeedback or system of python-control, optional
+        From sensors to actuators at any nodes, about the static position at the first speed,
+        continuous or sampled; signals are named as those of `rotorsim.state_space` (see
+        `OutputFeedback.of`). By default that of the file's ``[control]`` where ``orbit.control`` is
+        set.
+    consume : callable, optional
+        Called with each piece of some revolutions as soon as it is there.
 
     Returns
     -------
