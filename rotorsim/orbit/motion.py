@@ -258,7 +258,8 @@ class Motion:
         return Orbit(
             t=self.t, x=x, y=y, vx=vx, vy=vy, speed=self.speed, angle=self.angle,
             fx=force[:, 0], fy=force[:, 1], load=zero, actuator_force=self._actuator_at(rows),
-            displacements=motion[:, :2], min_film=clearance - np.hypot(x - middle[0], y - middle[1]),
+            displacements=motion[:, :2],
+            min_film=clearance - np.hypot(x - middle[0], y - middle[1]),
             boundary=middle + clearance * np.column_stack([np.cos(turn), np.sin(turn)]),
             samples_per_revolution=self.problem.samples_per_revolution,
             radial_clearance=clearance, equilibrium=(float(home[0]), float(home[1])),
