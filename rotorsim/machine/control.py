@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -359,6 +360,7 @@ def state_space(
     mass: float | None = None,
     speed: float | None = None,
     name: str = "rotor",
+    disturbances: Sequence[str] = (),
 ) -> control.StateSpace:
     """Return the state space of a machine at one speed, or of a rigid rotor on one bearing's film.
 
@@ -370,6 +372,11 @@ def state_space(
     speed : float, optional
         [rad/s], with a `Machine`.
     name : str
+    disturbances : sequence of str
+        Further inputs, behind the forces. ``unbalance``: ``unbalance_cos`` and ``unbalance_sin``,
+        which are cos(Omega t) and sin(Omega t) of the speed when the rotor turns with its own
+        unbalance [-]. ``base``: ``base_acceleration_x`` and ``base_acceleration_y`` of the
+        foundation [m/s2]; the displacements are then relative to it.
 
     Returns
     -------
@@ -383,7 +390,8 @@ def state_space(
     Raises
     ------
     InputError
-        The mass or the speed is missing or no number, or massless nodes are not damped.
+        The mass or the speed is missing or no number, massless nodes are not damped, there is no
+        such disturbance, or the rotor has no unbalance.
     """
     import control
 
@@ -403,13 +411,44 @@ def state_space(
         return ["".join((signals[i][0], word, signals[i][1])) for i in which]
 
     every = range(plant.size)
+    driven, more = [np.eye(plant.size)[:, :n]], []
+    for one in disturbances:
+        if one not in _DISTURBANCES:
+            raise InputError(
+                f"must be of {', '.join(_DISTURBANCES)}", key="disturbances", value=one
+            )
+        driven.append(_disturbance(plant, one, float(speed or 0.0), matrices[0]))
+        more += _DISTURBANCES[one]
+    inputs = b @ np.hstack(driven)
     return control.StateSpace(
-        a, b[:, :n], np.eye(n, a.shape[0]), np.zeros((n, n)),
+        a, inputs, np.eye(n, a.shape[0]), np.zeros((n, inputs.shape[1])),
         states=[*called("", every), *called("v", [int(i) for i in heavy])],
-        inputs=called("force_", range(n)),
+        inputs=[*called("force_", range(n)), *more],
         outputs=called("displacement_", range(n)),
         name=name,
     )  # fmt: skip
+
+
+_DISTURBANCES = {
+    "unbalance": ("unbalance_cos", "unbalance_sin"),
+    "base": ("base_acceleration_x", "base_acceleration_y"),
+}
+
+
+def _disturbance(plant: Machine, kind: str, speed: float, mass: Array) -> Array:
+    """Return the forces on all unknowns of both inputs of a disturbance, (n, 2)."""
+    if kind == "unbalance":
+        own = plant.rotor.unbalance_force(speed)
+        if not own.any():
+            raise InputError("the rotor has none", key="disturbances", value=kind)
+        force = np.zeros((plant.size, 2))
+        force[: plant.rotor.size] = np.column_stack([np.real(own), -np.imag(own)])
+        return force
+    moved = [
+        [float(unknown.endswith(axis) and not unknown.startswith("theta")) for axis in "xy"]
+        for _, unknown in plant.unknowns
+    ]
+    return -mass @ np.array(moved)
 
 
 def signal_name(node: str) -> str:

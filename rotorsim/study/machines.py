@@ -6,11 +6,14 @@ asked, once for each file that was loaded.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, overload
 
+import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..machine import control as rotor_control
@@ -93,23 +96,41 @@ def unbalance_response(
     return to_unbalance.unbalance_response(whole, speed)
 
 
+@overload
+def state_space(
+    plant: MachineFile | Machine | Coefficients, mass: float | None = None,
+    speed: float | None = None, name: str = "rotor", *, disturbances: Sequence[str] = (),
+    thermal_model: str | None = None,
+) -> control.StateSpace: ...  # fmt: skip
+@overload
+def state_space(
+    plant: MachineFile | Machine, mass: None = None, *, speed: Sequence[float] | Array,
+    name: str = "rotor", disturbances: Sequence[str] = (), thermal_model: str | None = None,
+) -> list[control.StateSpace]: ...  # fmt: skip
 def state_space(
     plant: MachineFile | Machine | Coefficients,
     mass: float | None = None,
-    speed: float | None = None,
+    speed: float | Sequence[float] | Array | None = None,
     name: str = "rotor",
     *,
+    disturbances: Sequence[str] = (),
     thermal_model: str | None = None,
-) -> control.StateSpace:
+) -> control.StateSpace | list[control.StateSpace]:
     """Return the state space of a machine at one speed, or of a rigid rotor on one bearing's film.
 
     Parameters
     ----------
     plant : MachineFile, Machine or Coefficients
-    mass, speed, name
+    speed : float or (n,) array, optional
+        [rad/s], with a machine. Of several speeds: a list of systems of the same states, inputs and
+        outputs, between which may be interpolated.
+    mass, name, disturbances
         See `rotorsim.machine.control.state_space`.
     thermal_model : str, optional
         Of a machine file's bearings; see `assembled`.
     """
     whole = assembled(plant, thermal_model) if isinstance(plant, MachineFile) else plant
-    return rotor_control.state_space(whole, mass, speed, name)
+    if isinstance(speed, np.ndarray | list | tuple) and np.ndim(speed) == 1:
+        return [rotor_control.state_space(whole, mass, w, name, disturbances) for w in speed]
+    at: Any = speed  # what is no number is refused there
+    return rotor_control.state_space(whole, mass, at, name, disturbances)

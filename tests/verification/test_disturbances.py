@@ -1,0 +1,103 @@
+"""A machine's state space: unbalance and motion of the base as inputs, systems over speed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import rotorsim as rs
+from rotorsim.errors import InputError
+from rotorsim.files.machine import MachineFile
+from rotorsim.study.machines import assembled
+
+TEXT = """
+title = "flexible rotor"
+[rotor]
+kind = "beam"
+[[rotor.section]]
+length = "1.2 m"
+outer_diameter = "60 mm"
+[[rotor.disc]]
+name = "wheel"
+at = "0.5 m"
+mass = "40 kg"
+polar_inertia = "0.4 kg*m^2"
+transverse_inertia = "0.25 kg*m^2"
+[[rotor.unbalance]]
+at = "0.5 m"
+amount = "400 g*mm"
+phase = "30 deg"
+[[support]]
+at = "0 mm"
+stiffness = ["20 MN/m", "15 MN/m"]
+damping = "2 kN*s/m"
+[[support]]
+at = "1 m"
+stiffness = "20 MN/m"
+damping = "2 kN*s/m"
+[operating]
+speed = "9000 rpm"
+"""
+SPEED = 9000.0 * np.pi / 30.0
+
+
+@pytest.fixture(scope="module")
+def machine() -> MachineFile:
+    return MachineFile.from_text(TEXT)
+
+
+def test_unbalance_as_input_gives_the_unbalance_response(machine):
+    system = rs.state_space(machine, speed=SPEED, disturbances=["unbalance"])
+    assert system.input_labels[-2:] == ["unbalance_cos", "unbalance_sin"]
+    cos, sin = np.moveaxis(system(1j * SPEED)[:, -2:], 1, 0)
+    # sin(w t) = Re(-i exp(i w t))
+    found = cos - 1j * sin
+    exact = rs.unbalance_response(machine, [SPEED]).amplitude[0]
+    np.testing.assert_allclose(found, exact[: found.size], rtol=1e-8, atol=1e-14)
+
+
+def test_motion_of_the_base_against_the_absolute_coordinates(machine):
+    """The base drives the machine through its supports alone: no inertia of the frame."""
+    whole = assembled(machine)
+    system = rs.state_space(machine, speed=SPEED, disturbances=["base"])
+    mass, damping, stiffness = whole.matrices(SPEED)
+    rotor = whole.rotor
+    held_c = damping - rotor.damping - SPEED * rotor.gyroscopic
+    held_k = stiffness - rotor.stiffness - SPEED * rotor.circulatory
+    for axis, label in enumerate("xy"):
+        along = rotor.translation(np.eye(2)[axis])
+        column = system.input_labels.index(f"base_acceleration_{label}")
+        for omega in (50.0, 400.0, 1500.0):
+            dynamic = stiffness + 1j * omega * damping - omega**2 * mass
+            driven = (held_k + 1j * omega * held_c) @ along
+            relative = np.linalg.solve(dynamic, driven) - along
+            # of a displacement of 1, whose acceleration is - omega^2
+            found = -(omega**2) * system(1j * omega)[:, column]
+            np.testing.assert_allclose(found, relative, atol=1e-7 * np.abs(relative).max())
+
+
+def test_systems_over_speed_have_the_same_signals(machine):
+    speeds = np.array([500.0, 700.0, 900.0])
+    family = rs.state_space(machine, speed=speeds, disturbances=["unbalance", "base"])
+    alone = rs.state_space(machine, speed=700.0, disturbances=["unbalance", "base"])
+    np.testing.assert_array_equal(family[1].A, alone.A)
+    np.testing.assert_array_equal(family[1].B, alone.B)
+    for system in family:
+        assert system.state_labels == alone.state_labels
+        assert system.input_labels[-4:] == [
+            "unbalance_cos", "unbalance_sin", "base_acceleration_x", "base_acceleration_y",
+        ]  # fmt: skip
+    # gyroscopic moments grow with the speed, and nothing else changes here
+    between = 0.5 * (np.asarray(family[0].A) + np.asarray(family[2].A))
+    np.testing.assert_allclose(between, family[1].A, atol=1e-9 * np.abs(between).max())
+
+
+def test_disturbances_that_are_not_there_are_refused(machine):
+    with pytest.raises(InputError, match="must be of unbalance, base") as caught:
+        rs.state_space(machine, speed=SPEED, disturbances=["wind"])
+    assert caught.value.key == "disturbances"
+    still = MachineFile.from_text(TEXT.replace("400 g*mm", "0 g*mm"))
+    with pytest.raises(InputError):
+        rs.state_space(still, speed=SPEED, disturbances=["unbalance"])
+    with pytest.raises(InputError):
+        rs.state_space(machine, speed="9000 rpm")
