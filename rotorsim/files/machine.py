@@ -296,6 +296,8 @@ class MachineFile:
             for word in ("actuator", "sensor"):
                 for i, place in enumerate(getattr(self.control, word)):
                     place_named(self, place, f"control.{word}[{i}]")
+        elif self.orbit is not None and self.orbit.control:
+            raise InputError('is missing: actuator = ["250 mm"], for orbit.control', key="control")
 
     def with_parts(self, **parts: Any) -> MachineFile:
         """Return the machine with some parts replaced; bearings and tables are not read again."""

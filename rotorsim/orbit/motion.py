@@ -232,8 +232,8 @@ class Motion:
         """Return the motion of one station for analysis, figures and recordings of an `Orbit`.
 
         In a film it is relative to the housing, with the film's force; elsewhere it is that of
-        the shaft's centre, without a film's force, and the boundary is a circle of the films'
-        least clearance around its rest, for scale.
+        the shaft's centre, without a force, and boundary and least film are those of a circle
+        around its rest, of the films' least clearance or of its own reach.
         """
         station, system = self.station(name), self.problem.system
         links = [link for link in system.links if link.film]
@@ -260,7 +260,7 @@ class Motion:
             fx=force[:, 0], fy=force[:, 1], load=zero, actuator_force=self._actuator_at(rows),
             displacements=motion[:, :2],
             min_film=clearance - np.hypot(x - middle[0], y - middle[1]),
-            boundary=middle + clearance * np.column_stack([np.cos(turn), np.sin(turn)]),
+            boundary=clearance * np.column_stack([np.cos(turn), np.sin(turn)]),
             samples_per_revolution=self.problem.samples_per_revolution,
             radial_clearance=clearance, equilibrium=(float(home[0]), float(home[1])),
             force_model=system.links[station.link].force.name if station.link is not None

@@ -78,8 +78,8 @@ class Orbit:
     min_film : (n,) array
         Smallest film thickness [m]; c - e in a plain bearing.
     boundary : (m, 2) array
-        Closed line of the positions where journal and bush touch [m]: the clearance circle of a
-        plain bearing.
+        Closed line of the positions where journal and bush touch, about `centre` [m]: the clearance
+        circle of a plain bearing.
     samples_per_revolution : int
     radial_clearance : float
         [m]
@@ -127,6 +127,16 @@ class Orbit:
     kind: str = ""
     note: str = ""
     pad_velocity: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    @property
+    def has_film(self) -> bool:
+        """Whether a film's force acts here."""
+        return bool(np.any(self.fx) or np.any(self.fy))
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        """Middle of the picture [m]: the bearing's, or where no film is the static position."""
+        return (0.0, 0.0) if self.has_film else self.equilibrium
 
     @property
     def revolutions(self) -> Array:

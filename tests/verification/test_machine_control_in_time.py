@@ -132,7 +132,9 @@ def test_saturation_against_an_independent_integration():
     assert not motion.orbit("wheel").actuator_force.any()
     # a place without a film is shown within a circle around its rest
     free = motion.orbit("overhung")
-    np.testing.assert_allclose(free.boundary[:-1].mean(axis=0), free.equilibrium, atol=1e-12)
+    assert not free.has_film
+    assert free.centre == free.equilibrium
+    np.testing.assert_allclose(free.boundary[:-1].mean(axis=0), 0.0, atol=1e-12)
 
 
 FILMS = (
@@ -210,8 +212,9 @@ def test_what_cannot_be_is_refused_with_its_key():
         return caught.value.key, str(caught.value)
 
     without = machine()
-    bare = MachineFile.from_text(TEXT.format(elements=6).split("[control]")[0] + ORBIT)
-    assert key(bare)[0] == "control"
+    with pytest.raises(InputError) as caught:
+        MachineFile.from_text(TEXT.format(elements=6).split("[control]")[0] + ORBIT)
+    assert caught.value.key == "control"
     assert key(without, controller="pd")[0] == "controller"
     other = replace(designed_feedback(without, SPEED), sensors=("no_such_displacement_x",) * 2)
     where, said = key(without, controller=other)

@@ -59,13 +59,16 @@ def orbit_plot(
     figure, axes = new_axes(2, count, (3.4 * count + 0.6, 7.0), title)
     for column, (orbit, name) in enumerate(zip(orbits, names, strict=True)):
         above, below = axes[:, column]
-        reach = 1.1 * _draw_contact(above, orbit)
+        reach, middle = 1.1 * _draw_contact(above, orbit), np.array(orbit.centre) * _SMALL.factor
         for ax in (above, below):
             _draw(ax, orbit, name, steady_only)
         above.set_aspect("equal", adjustable="box")
-        above.set(xlim=(-reach, reach), ylim=(-reach, reach))
-        clearance = _SMALL.said(orbit.radial_clearance)
-        above.set_title(f"{caption(run_title(name))}\nclearance {clearance}")
+        (left, low), (right, high) = middle - reach, middle + reach
+        above.set(xlim=(left, right), ylim=(low, high))
+        said = f"clearance {_SMALL.said(orbit.radial_clearance)}"
+        if not orbit.has_film:
+            said = f"no film; circle of {_SMALL.with_unit(orbit.radial_clearance)}"
+        above.set_title(f"{caption(run_title(name))}\n{said}")
         below.set_aspect("equal", adjustable="datalim")
         below.set_title("close-up")
         below.locator_params(nbins=5)
@@ -205,7 +208,8 @@ def bode_plot(
 def _draw_contact(ax: Axes, orbit: Orbit) -> float:
     """Draw the line on which journal and bush touch; give how far it reaches [µm]."""
     line = orbit.boundary * _SMALL.factor
-    ax.plot(*line.T, color="k", linewidth=1.2)
+    shown = line + np.array(orbit.centre) * _SMALL.factor
+    ax.plot(*shown.T, color="k" if orbit.has_film else "0.6", linewidth=1.2)
     return float(np.hypot(*line.T).max())
 
 

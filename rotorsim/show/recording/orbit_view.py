@@ -95,7 +95,7 @@ def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
     """
     root = _orbit_entity(run.name)
     reach = (1.32 * run.reach if zoom is None else zoom) * MICRO
-    x0, y0 = run.centre if zoom is None else run.orbit.equilibrium
+    x0, y0 = run.orbit.centre if zoom is None else run.orbit.equilibrium
     centre = _view_points(x0, y0).astype(float)
     # The force's scale belongs to the whole circle.
     hidden = [] if zoom is None else [f"- /{root}/film_force_N"]
@@ -130,11 +130,11 @@ def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
     """Write what stands still: contact line, axes, labels, static position, Poincare points."""
     root = _orbit_entity(run.name)
     reach = run.reach * MICRO
-    centre = _view_points(*run.centre)
+    centre = _view_points(*run.orbit.centre)
     line = _view_points(*run.orbit.boundary.T) + centre
     radius = f"{run.orbit.radial_clearance * MICRO:.4g} µm"
     words = ["x, load", "y", f"radius {radius}"]
-    if np.any(run.force):
+    if run.orbit.has_film:
         words = ["x, load", "y", f"journal touches, c = {radius}", "green: film force"]
     corners = [[1.1, -0.04], [0.0, -1.2], [0.0, 1.06], [-0.8, -1.2]][: len(words)]
     stream.log(

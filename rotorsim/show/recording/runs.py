@@ -60,11 +60,6 @@ class Run(NamedTuple):
         return self.orbit.t.size
 
     @property
-    def centre(self) -> tuple[float, float]:
-        """Middle of its picture [m]: the bearing's, or where no film is the static position."""
-        return (0.0, 0.0) if np.any(self.force) else self.orbit.equilibrium
-
-    @property
     def force(self) -> Array:
         """Film force on the journal, (n, 2) [N]."""
         return np.column_stack([self.orbit.fx, self.orbit.fy])
