@@ -42,6 +42,12 @@ def refuse_no_machine(value: object) -> None:
         )
 
 
+def refuse_other(value: object, kind: type | tuple[type, ...], key: str, hint: str) -> None:
+    """Refuse what is not of a type; `hint` says what is meant, and where it comes from."""
+    if not isinstance(value, kind):
+        raise InputError(f"must be {hint}", key=key, value=type(value).__name__)
+
+
 def file_path(value: object) -> Path:
     """Return the path of a file given by text or path; refuse None, open files and the like.
 

@@ -8,6 +8,7 @@ from contextlib import suppress
 
 import numpy as np
 
+from ..arguments import refuse_other
 from ..arrays import Array
 from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
@@ -72,6 +73,7 @@ def solve_case(
     InputError
         The speed is not positive, or the mesh cannot hold the geometry.
     """
+    refuse_other(case, Case, "case", "a Case, as scenario.case() returns one")
     try:
         speed = Quantity("speed").check(speed, "speed")
     except InputError as error:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ..arguments import refuse_other
 from ..arrays import Array, Booleans
 from ..bearing.dynamics import FilmDynamics, rigid_growth_rates
 from ..bearing.table import CoefficientTable
@@ -121,6 +122,7 @@ def stability_map(
     OutOfRangeError
         A speed lies outside the table.
     """
+    refuse_other(table, CoefficientTable, "table", "a CoefficientTable, as tabulate returns one")
     masses = _axis(mass, "mass")
     speeds = table.speeds if speed is None else _axis(speed, "speed")
     stiffness, damping, load = _coefficients(table, None if speed is None else speeds)
@@ -142,7 +144,10 @@ def stability_map(
 
 
 def _axis(values: ArrayLike, name: str) -> Array:
-    axis = np.atleast_1d(np.asarray(values, dtype=float))
+    try:
+        axis = np.atleast_1d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError):
+        axis = np.zeros(0)
     if axis.ndim != 1 or not axis.size or not np.all(np.isfinite(axis)) or not np.all(axis > 0.0):
         raise InputError("must be one or more numbers above 0", key=name, value=values)
     if np.any(np.diff(axis) <= 0.0):

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import file_path, refuse_other
 from ..arrays import Array
 from ..orbit import Orbit
 from ..orbit.analysis import speed_cascade
@@ -229,7 +230,12 @@ def record(orbits: Orbit | Iterable[Orbit], path: str | Path, *, title: str = "O
     """
     from .recording import RecordingContents, write_recording
 
-    several = (orbits,) if isinstance(orbits, Orbit) else tuple(orbits)
+    given: Any = (orbits,) if isinstance(orbits, Orbit) else orbits
+    refuse_other(given, Iterable, "orbits", "an Orbit, or several")
+    several = tuple(given)
+    for one in several:
+        refuse_other(one, Orbit, "orbits", "an Orbit, or several")
+    path = file_path(path)
     kind = several[0].kind if several else ""
     return write_recording(path, RecordingContents(title, orbit_notes(several), kind, several))
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import quote
 
+from ..arguments import file_path
 from ..errors import InputError
 from ..file_kinds import is_missing
 
@@ -49,7 +50,7 @@ def open_viewer(path: str | Path) -> ViewerLaunch:
     InputError
         If there is no such file.
     """
-    recording = _existing(path)
+    recording = _existing(file_path(path))
     program = viewer_program()
     if program is None:
         return ViewerLaunch(False, "The rerun-sdk package has no viewer on this platform.", 1)

@@ -80,3 +80,20 @@ def test_a_machine_is_asked_for(call, value) -> None:
 def test_a_file_is_asked_for(call) -> None:
     with pytest.raises(InputError, match=r"^path: must be the name of a file"):
         call(3.5)
+
+
+@pytest.mark.parametrize(
+    ("call", "key"),
+    [
+        (lambda: rs.open_viewer(3.5), "path"),  # type: ignore[arg-type]
+        (lambda: rs.solve_case(SCENARIO, 900.0), "case"),  # type: ignore[arg-type]
+        (lambda: rs.stability_map("table.nc", [100.0]), "table"),  # type: ignore[arg-type]
+        (lambda: rs.record(3.5, "x.rrd"), "orbits"),  # type: ignore[arg-type]
+        (lambda: rs.record([3.5], "x.rrd"), "orbits"),  # type: ignore[list-item]
+        (lambda: rs.record([], None), "path"),  # type: ignore[arg-type]
+    ],
+)
+def test_wrong_types_are_named(call, key) -> None:
+    with pytest.raises(InputError) as caught:
+        call()
+    assert caught.value.key == key
