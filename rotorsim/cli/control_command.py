@@ -274,7 +274,8 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
     if feedback.sample_time:
         late = f", forces {number(feedback.delay * 1e6)} µs later" if feedback.delay else ""
         facts.add_row("sampled", f"each {number(feedback.sample_time * 1e6)} µs{late}")
-    facts.add_row("modulus margin", number(study.margin, 3))
+    stable = complex(study.controlled_eigenvalues[0]).real < 0.0
+    facts.add_row("modulus margin", number(study.margin if stable else None, 3))
     if study.largest_force is not None:
         of = ", saturates" if study.saturates else ""
         facts.add_row("largest force", f"{with_unit(study.largest_force, 'N')}{of}")

@@ -448,7 +448,11 @@ def _disturbance(plant: Machine, kind: str, speed: float, mass: Array) -> Array:
         [float(unknown.endswith(axis) and not unknown.startswith("theta")) for axis in "xy"]
         for _, unknown in plant.unknowns
     ]
-    return -mass @ np.array(moved)
+    # what a film or a seal adds to the rotor's mass moves with it against the base
+    own = mass.copy()
+    own[: plant.rotor.size] = 0.0
+    own[: plant.rotor.size, : plant.rotor.size] = plant.rotor.mass
+    return -own @ np.array(moved)
 
 
 def signal_name(node: str) -> str:

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     import control
 
 
+MOST_WAITING = 50
+"""Sample times that a delay may last: each waiting force is a state of the sampled loop."""
+
+
 @dataclass(frozen=True, eq=False)
 class OutputFeedback:
     """z' = A z + B y + W (f - u), u = C z + D y: forces u from sensors y, f after saturation.
@@ -69,6 +73,10 @@ class OutputFeedback:
                 "needs a sample_time; of a continuous controller put control.pade into it",
                 key="delay", value=self.delay,
             )  # fmt: skip
+        if self.delay > MOST_WAITING * self.sample_time:
+            raise InputError(
+                f"must be at most {MOST_WAITING} sample times", key="delay", value=self.delay
+            )
 
     @classmethod
     def of(cls, controller: Any, max_force: float = np.inf, delay: float = 0.0) -> OutputFeedback:

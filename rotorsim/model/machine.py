@@ -278,6 +278,10 @@ class MachineControl:
     def __post_init__(self) -> None:
         if self.delay and self.sample_time is None:
             raise InputError('goes with a sample_time: "100 us", say', key="control.delay")
+        if self.sample_time is not None and self.delay > 50.0 * self.sample_time:
+            raise InputError(
+                "must be at most 50 sample times (s)", key="control.delay", value=self.delay
+            )
 
 
 def distinct_names(entries: Sequence[Any], word: str) -> tuple[str, ...]:

@@ -76,6 +76,8 @@ def simulate(
     Raises InputError: The file has no orbit, a film cannot have the force asked for, a speed lies
         outside its bearings' range, or a controller's signal is not there.
     """
+    if problem is not None and controller is not None:
+        raise InputError("is that of the problem: give it to motion_problem", key="controller")
     problem = problem or motion_problem(machine, orbit, result, controller)
     keep = _MAX_SAMPLES // problem.samples_per_revolution
     return simulate_motion(problem, consume=consume, keep_revolutions=keep)
@@ -162,6 +164,10 @@ class _Builder(MotionParts):
             whole["damping"][np.ix_(at, at)] += damping
         for mount, at in zip(linear.mounts, linear.places, strict=True):
             whole["mass"][at[:, None], at] += mount.support.matrices(self.top)[2]
+        # what supports add to the rotor's mass moves with it against the base
+        shaken = whole["mass"].copy()
+        shaken[:size] = 0.0
+        shaken[:size, :size] = rotor.mass
         static = np.pad(self.static_force(self.first), (0, total - size))
         for at, force in self.preload:
             static[at] += force
@@ -177,7 +183,7 @@ class _Builder(MotionParts):
         system = MotionSystem(
             **matrices, constant=constant, scale=scale, basis=basis, offset=offset,
             unbalance=self._unbalance(basis, total), links=links,
-            block=linear_block(self, linear, place, {}), loads=self._loads(basis, whole["mass"]),
+            block=linear_block(self, linear, place, {}), loads=self._loads(basis, shaken),
             names=self._names(linear),
             turned_offset=basis.T @ (whole["circulatory"] @ offset),
         )  # fmt: skip
@@ -347,6 +353,13 @@ class _Builder(MotionParts):
             name, node = probe.name or f"probe {i}", node_at(rotor, probe.at)
             if name not in found:
                 found[name] = Station(name, rotor.planes[node], probe.at)
+        if self.controller is not None:
+            shown = {place for one in found.values() for place in one.places}
+            for i in signals_of(self.controller, system.names).driven:
+                node = next((k for k, both in enumerate(rotor.planes) if i in both), None)
+                if node is not None and i not in shown:
+                    name, at = rotor.nodes[node].name, rotor.nodes[node].position
+                    found[name] = Station(name, rotor.planes[node], at)
         return tuple(found.values())
 
     def _label(self) -> str:

@@ -131,6 +131,8 @@ def state_space(
     """
     whole = assembled(plant, thermal_model) if isinstance(plant, MachineFile) else plant
     if isinstance(speed, np.ndarray | list | tuple) and np.ndim(speed) == 1:
+        if not isinstance(whole, Machine) or not len(speed):
+            raise InputError("must be one or more speeds, of a machine", key="speed", value=speed)
         return [rotor_control.state_space(whole, mass, w, name, disturbances) for w in speed]
     at: Any = speed  # what is no number is refused there
     return rotor_control.state_space(whole, mass, at, name, disturbances)

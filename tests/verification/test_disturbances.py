@@ -56,24 +56,50 @@ def test_unbalance_as_input_gives_the_unbalance_response(machine):
     np.testing.assert_allclose(found, exact[: found.size], rtol=1e-8, atol=1e-14)
 
 
-def test_motion_of_the_base_against_the_absolute_coordinates(machine):
-    """The base drives the machine through its supports alone: no inertia of the frame."""
-    whole = assembled(machine)
-    system = rs.state_space(machine, speed=SPEED, disturbances=["base"])
+ADDED = """
+[[support]]
+at = "1.2 m"
+stiffness = "1 MN/m"
+damping = "1 kN*s/m"
+mass = "5 kg"
+pedestal = { mass = "30 kg", stiffness = "80 MN/m", damping = "5 kN*s/m" }
+[[seal]]
+at = "0.7 m"
+stiffness = "2 MN/m"
+damping = "3 kN*s/m"
+mass = "20 kg"
+[operating]
+"""
+
+
+@pytest.mark.parametrize("added", [False, True], ids=["no added mass", "seal and pedestal"])
+def test_motion_of_the_base_against_the_absolute_coordinates(added):
+    """The base drives the machine through supports and seals alone: no inertia of the frame."""
+    found = MachineFile.from_text(TEXT.replace("[operating]\n", ADDED) if added else TEXT)
+    whole = assembled(found)
+    system = rs.state_space(found, speed=SPEED, disturbances=["base"])
     mass, damping, stiffness = whole.matrices(SPEED)
-    rotor = whole.rotor
-    held_c = damping - rotor.damping - SPEED * rotor.gyroscopic
-    held_k = stiffness - rotor.stiffness - SPEED * rotor.circulatory
-    for axis, label in enumerate("xy"):
-        along = rotor.translation(np.eye(2)[axis])
+    rotor, n = whole.rotor, whole.rotor.size
+    shaft = np.zeros((3, whole.size, whole.size))
+    shaft[0, :n, :n] = rotor.mass
+    shaft[1, :n, :n] = rotor.damping + SPEED * rotor.gyroscopic
+    shaft[2, :n, :n] = rotor.stiffness + SPEED * rotor.circulatory
+    if added:  # housings have a mass of their own, whose inertia the base does not drive either
+        for i, (_, unknown) in enumerate(whole.unknowns[n:], start=n):
+            assert unknown in {"housing_x", "housing_y"}
+            shaft[0, i, i] = 30.0
+    held = [part - own for part, own in zip((mass, damping, stiffness), shaft, strict=True)]
+    for label in "xy":
+        along = np.array([float(unknown.endswith(label) and "theta" not in unknown)
+                          for _, unknown in whole.unknowns])  # fmt: skip
         column = system.input_labels.index(f"base_acceleration_{label}")
         for omega in (50.0, 400.0, 1500.0):
             dynamic = stiffness + 1j * omega * damping - omega**2 * mass
-            driven = (held_k + 1j * omega * held_c) @ along
+            driven = (held[2] + 1j * omega * held[1] - omega**2 * held[0]) @ along
             relative = np.linalg.solve(dynamic, driven) - along
             # of a displacement of 1, whose acceleration is - omega^2
-            found = -(omega**2) * system(1j * omega)[:, column]
-            np.testing.assert_allclose(found, relative, atol=1e-7 * np.abs(relative).max())
+            answer = -(omega**2) * system(1j * omega)[:, column]
+            np.testing.assert_allclose(answer, relative[:n], atol=1e-7 * np.abs(relative).max())
 
 
 def test_systems_over_speed_have_the_same_signals(machine):
@@ -99,5 +125,6 @@ def test_disturbances_that_are_not_there_are_refused(machine):
     still = MachineFile.from_text(TEXT.replace("400 g*mm", "0 g*mm"))
     with pytest.raises(InputError):
         rs.state_space(still, speed=SPEED, disturbances=["unbalance"])
-    with pytest.raises(InputError):
-        rs.state_space(machine, speed="9000 rpm")
+    for wrong in ("9000 rpm", []):
+        with pytest.raises(InputError):
+            rs.state_space(machine, speed=wrong)

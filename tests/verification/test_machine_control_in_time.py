@@ -13,6 +13,7 @@ from rotorsim.errors import InputError
 from rotorsim.files.machine import MachineFile
 from rotorsim.machine.output_feedback import run_in_time
 from rotorsim.study.machine_control import designed_feedback
+from rotorsim.study.machine_motion import motion_problem
 from rotorsim.study.machines import assembled
 from rotorsim.study.motion_results import motion_document
 
@@ -130,6 +131,8 @@ def test_saturation_against_an_independent_integration():
     # the orbit of the actuator's place has its force, that of another none
     assert np.abs(motion.actuator_force).max() == pytest.approx(20.0)
     assert not motion.orbit("wheel").actuator_force.any()
+    place = next(one.name for one in motion.stations if one.position == pytest.approx(0.25))
+    assert np.abs(motion.orbit(place).actuator_force).max() == pytest.approx(20.0)
     # a place without a film is shown within a circle around its rest
     free = motion.orbit("overhung")
     assert not free.has_film
@@ -222,6 +225,14 @@ def test_what_cannot_be_is_refused_with_its_key():
     assert "overhung_displacement_x" in said or "displacement" in said
     with pytest.raises(InputError, match="goes with a sample_time"):
         machine('delay = "60 us"\n')
+    with pytest.raises(InputError, match="at most 50 sample times"):
+        machine('sample_time = "100 us"\ndelay = "50 ms"\n')
+    with pytest.raises(InputError, match="at most 50 sample times"):
+        designed_feedback(without, SPEED).sampled(1e-4, 0.05)
+    problem = motion_problem(without)
+    assert key(without, problem=problem, controller=designed_feedback(without, SPEED))[0] == (
+        "controller"
+    )
     with pytest.raises(InputError, match="above 0"):
         machine('sample_time = "0 us"\n')
     driven = ORBIT.replace("revolutions = 40", "").replace(
