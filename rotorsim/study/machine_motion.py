@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 _MAX_SAMPLES = 1_000_000
 _REDUCTION = 1e-4
 """Relative change of eigenvalues that a reduction may bring."""
+_ROUNDING = 1e-6
+"""Growth rate over frequency that an undamped mode may show."""
 _SMALL = 48
 """Unknowns of a rotor that is not reduced."""
 _MIN_MODES = 8
@@ -326,8 +328,11 @@ class _Builder(MotionParts):
             return closed_eigenvalues(self.controller, matrix, m, basis, system.names)
 
         exact = poles(whole["mass"], big_c, big_k, np.eye(len(big_k)))
-        # a controller may drive any mode: what it makes grow counts, however fast
-        exact = exact[(np.abs(exact) <= reach) | (exact.real > 0.0)]
+        counts = np.abs(exact) <= reach
+        if self.controller is not None:
+            # it may drive any mode: what grows by more than rounding counts, however fast
+            counts |= exact.real > _ROUNDING * np.abs(exact)
+        exact = exact[counts]
         ours = poles(system.mass, c, k, system.basis)
         if not exact.size:
             return 0.0
