@@ -92,6 +92,15 @@ def _solve(a: Array, order: NDArray[np.int64], b: Array) -> None:
 
 
 @compiled()
+def _product(matrix: Array, values: Array, out: Array) -> None:
+    for i in range(out.size):
+        total = 0.0
+        for j in range(values.size):
+            total += matrix[i, j] * values[j]
+        out[i] = total
+
+
+@compiled()
 def _sample(s: float, h: float, q0: Array, v0: Array, a0: Array, q1: Array, v1: Array, a1: Array,
             q: Array, v: Array) -> None:  # fmt: skip
     """Interpolate by quintic Hermite polynomials at the share s of a step h."""
@@ -123,63 +132,69 @@ def march(
     """
     n = q.size
     out_q, out_v = np.empty((times.size, n)), np.empty((times.size, n))
-    q, v = q.copy(), v.copy()
+    q, v, q1, v1 = q.copy(), v.copy(), np.empty(n), np.empty(n)
     t, done, h = start, 0, min(step, stop - start)
-    lengths = 1e-2 * scale
     phi, w, alpha = shaft(t, knots)
     f = force_on(t, q, v, phi, w, alpha, p)
-    a = p.inverse @ f
+    a, a1, rate, right = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    _product(p.inverse, f, a)
     uq, uv = np.empty((6, n)), np.empty((6, n))
+    qs, vs, rq, rv = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    stiffness, damping, matrix = np.empty((n, n)), np.empty((n, n)), np.empty((n, n))
     order = np.empty(n, dtype=np.int64)
     slack = 1e-12 * max(abs(start), abs(stop))
     while done < times.size and times[done] <= t + slack:
-        out_q[done], out_v[done] = q, v
+        _sample(0.0, 1.0, q, v, a, q, v, a, out_q[done], out_v[done])
         done += 1
     least_step = 1e-13 * max(abs(stop), stop - start)
     fresh = True
-    stiffness, damping = derivatives(q, v, w, scale, p)
-    rate = f
     while t < stop - slack:
         if fresh:
             stiffness, damping = derivatives(q, v, w, scale, p)
             nudge = 1e-5 * h
             phi1, w1, alpha1 = shaft(t + nudge, knots)
-            rate = (force_on(t + nudge, q, v, phi1, w1, alpha1, p) - f) / nudge
+            ahead = force_on(t + nudge, q, v, phi1, w1, alpha1, p)
+            for i in range(n):
+                rate[i] = (ahead[i] - f[i]) / nudge
         last = t + h >= stop - slack
         if last:
             step, h = h, stop - t
-        matrix = p.mass / (_GAMMA * h) + damping + _GAMMA * h * stiffness
-        good = _factor(matrix, order)
+        share = _GAMMA * h
+        for i in range(n):
+            for j in range(n):
+                matrix[i, j] = p.mass[i, j] / share + damping[i, j] + share * stiffness[i, j]
         error = math.inf
-        if good:
-            for i in range(6):
-                qs, vs = q.copy(), v.copy()
-                rq, rv = np.zeros(n), np.zeros(n)
-                for j in range(i):
-                    if j < 5:
-                        if _A[i, j] != 0.0:
-                            qs += _A[i, j] * uq[j]
-                            vs += _A[i, j] * uv[j]
-                        rq += (_C[i, j] / h) * uq[j]
-                        rv += (_C[i, j] / h) * uv[j]
-                if i == 0:
-                    force = f.copy()
-                else:
-                    ti = t + _TIME[i] * h
-                    phi, w, alpha = shaft(ti, knots)
-                    force = force_on(ti, qs, vs, phi, w, alpha, p)
-                rq += vs
-                right = force + p.mass @ rv + (_SLOPE[i] * h) * rate
-                right -= (_GAMMA * h) * (stiffness @ rq)
+        if _factor(matrix, order):
+            for stage in range(6):
+                ti = t + _TIME[stage] * h
+                phi, w, alpha = shaft(ti, knots)
+                for i in range(n):
+                    qs[i], vs[i], rq[i], rv[i] = q[i], v[i], 0.0, 0.0
+                    for j in range(min(stage, 5)):
+                        qs[i] += _A[stage, j] * uq[j, i]
+                        vs[i] += _A[stage, j] * uv[j, i]
+                        rq[i] += (_C[stage, j] / h) * uq[j, i]
+                        rv[i] += (_C[stage, j] / h) * uv[j, i]
+                    rq[i] += vs[i]
+                force = f if stage == 0 else force_on(ti, qs, vs, phi, w, alpha, p)
+                for i in range(n):
+                    total = force[i] + _SLOPE[stage] * h * rate[i]
+                    for j in range(n):
+                        total += p.mass[i, j] * rv[j] - share * stiffness[i, j] * rq[j]
+                    right[i] = total
                 _solve(matrix, order, right)
-                uv[i] = right
-                uq[i] = _GAMMA * h * (right + rq)
+                for i in range(n):
+                    uv[stage, i] = right[i]
+                    uq[stage, i] = share * (right[i] + rq[i])
             total = 0.0
             speed = max(abs(w), 1.0)
             for i in range(n):
-                size = lengths[i] + max(abs(q[i]), abs(q[i] + uq[0, i]))
+                # the last stage's arguments, plus its own increment, are the new state
+                q1[i], v1[i] = qs[i] + uq[5, i], vs[i] + uv[5, i]
+                least = 1e-2 * scale[i]
+                size = least + max(abs(q[i]), abs(q[i] + uq[0, i]))
                 total += (uq[5, i] / (tolerance * size)) ** 2
-                size = speed * lengths[i] + max(abs(v[i]), abs(v[i] + uv[0, i]))
+                size = speed * least + max(abs(v[i]), abs(v[i] + uv[0, i]))
                 total += (uv[5, i] / (tolerance * size)) ** 2
             error = math.sqrt(total / (2 * n))
         if not error <= 1.0:
@@ -190,22 +205,15 @@ def march(
                 touched = least_film(q, v, p) < 1e-3 * scale.max()
                 return out_q, out_v, done, TOUCHED if touched else STUCK, t, q, v, h
             continue
-        # the last stage's arguments, plus its own increment, are the new state
-        q1, v1 = q.copy(), v.copy()
-        for j in range(5):
-            q1 += _A[5, j] * uq[j]
-            v1 += _A[5, j] * uv[j]
-        q1 += uq[5]
-        v1 += uv[5]
         t1 = stop if last else t + h
         phi, w, alpha = shaft(t1, knots)
-        f1 = force_on(t1, q1, v1, phi, w, alpha, p)
-        a1 = p.inverse @ f1
+        f = force_on(t1, q1, v1, phi, w, alpha, p)
+        _product(p.inverse, f, a1)
         while done < times.size and times[done] <= t1 + slack:
             s = min(max((times[done] - t) / h, 0.0), 1.0)
             _sample(s, h, q, v, a, q1, v1, a1, out_q[done], out_v[done])
             done += 1
-        t, q, v, f, a = t1, q1, v1, f1, a1
+        t, q, v, a, q1, v1, a1 = t1, q1, v1, a1, q, v, a
         fresh = True
         if least_film(q, v, p) <= 0.0:
             return out_q, out_v, done, TOUCHED, t, q, v, h

@@ -79,7 +79,7 @@ class Link:
 
     @cached_property
     def compilable(self) -> bool:
-        """Whether the force has a compiled form."""
+        """Return whether the force has a compiled form."""
         return isinstance(self.force, CompilableForce)
 
     @cached_property
@@ -194,12 +194,12 @@ class MotionSystem:
 
     @cached_property
     def linear(self) -> bool:
-        """Whether all forces are linear in the motion."""
+        """Return whether all forces are linear in the motion."""
         return not self.links and self.limited is None
 
     @cached_property
     def compilable(self) -> bool:
-        """Whether all links have a compiled form."""
+        """Return whether all links have a compiled form."""
         return all(link.compilable for link in self.links)
 
     def plain(self, lowest: float, highest: float) -> Plain:
@@ -447,7 +447,10 @@ def block_row(w: float, p: Plain) -> Array:
     index = min(max(int(place), 0), p.block_table.shape[0] - 1)
     s = place - index
     c = p.block_table[index]
-    return c[0] + s * (c[1] + s * (c[2] + s * c[3]))
+    row = np.empty(c.shape[1])
+    for i in range(row.size):
+        row[i] = c[0, i] + s * (c[1, i] + s * (c[2, i] + s * c[3, i]))
+    return row
 
 
 @compiled()
@@ -473,9 +476,17 @@ def explicit_force(t: float, phi: float, w: float, alpha: float, p: Plain) -> Ar
 def force_on(t: float, q: Array, v: Array, phi: float, w: float, alpha: float, p: Plain) -> Array:
     """Return all forces (n,) but the inertia's: M q'' is this."""
     force = explicit_force(t, phi, w, alpha, p)
-    force -= p.damping @ v + p.stiffness @ q
-    if p.gyroscopic.shape[0] > 0:
-        force -= w * (p.gyroscopic @ v + p.circulatory @ q + p.turned_offset)
+    turning = p.gyroscopic.shape[0] > 0
+    for i in range(q.size):
+        total = 0.0
+        for j in range(q.size):
+            total += p.damping[i, j] * v[j] + p.stiffness[i, j] * q[j]
+        if turning:
+            turned = p.turned_offset[i]
+            for j in range(q.size):
+                turned += p.gyroscopic[i, j] * v[j] + p.circulatory[i, j] * q[j]
+            total += w * turned
+        force[i] -= total
     m = p.block.size
     if m > 0:
         row = block_row(w, p)
@@ -489,8 +500,9 @@ def force_on(t: float, q: Array, v: Array, phi: float, w: float, alpha: float, p
         fx, fy, torque = link_force(k, x, y, vx, vy, ring, w, p)
         _add(force, p.links[k], fx, fy, torque)
     for k in range(p.limit_offset.size):
-        wanted = limited_force(k, q, v, p)
-        force += p.limit_columns[:, k] * min(max(wanted, -p.limit), p.limit)
+        given = min(max(limited_force(k, q, v, p), -p.limit), p.limit)
+        for i in range(force.size):
+            force[i] += p.limit_columns[i, k] * given
     return force
 
 
@@ -518,7 +530,8 @@ def _add(force: Array, link: NDArray[np.int64], fx: float, fy: float, torque: fl
 def _slopes(k: int, q: Array, v: Array, w: float, scale: Array, p: Plain) -> Array:
     """Return minus the derivatives of a link's force and torque by x, y, vx, vy, ring speed."""
     link, f = p.links[k], p.link_numbers[k]
-    place = np.array(link_place(k, q, v, p))
+    place, moved = np.empty(5), np.empty(5)
+    place[0], place[1], place[2], place[3], place[4] = link_place(k, q, v, p)
     slopes = np.zeros((3, 5))
     if link[0] == SOLVED and link[5] < 0:
         numbers, table = _form(k, p)
@@ -528,7 +541,6 @@ def _slopes(k: int, q: Array, v: Array, w: float, scale: Array, p: Plain) -> Arr
             for j in range(4):
                 slopes[i, j] = film[j // 2, i, j % 2]
         return slopes
-    moved = np.empty(5)
     length = 1e-6 * max(scale[link[1]], abs(place[0]), abs(place[1]))
     per_second = max(abs(w), 1.0)
     for j in range(5):
@@ -536,7 +548,8 @@ def _slopes(k: int, q: Array, v: Array, w: float, scale: Array, p: Plain) -> Arr
             continue
         # of a ring the speed moves the force as that of the shaft does
         step = length if j < 2 else (length * per_second if j < 4 else 1e-6 * per_second)
-        moved[:] = place
+        for i in range(5):
+            moved[i] = place[i]
         moved[j] = place[j] + step
         up = link_force(k, moved[0], moved[1], moved[2], moved[3], moved[4], w, p)
         moved[j] = place[j] - step
@@ -554,8 +567,10 @@ def derivatives(q: Array, v: Array, w: float, scale: Array, p: Plain) -> tuple[A
     """
     stiffness, damping = p.stiffness.copy(), p.damping.copy()
     if p.gyroscopic.shape[0] > 0:
-        stiffness += w * p.circulatory
-        damping += w * p.gyroscopic
+        for i in range(q.size):
+            for j in range(q.size):
+                stiffness[i, j] += w * p.circulatory[i, j]
+                damping[i, j] += w * p.gyroscopic[i, j]
     m = p.block.size
     if m > 0:
         row = block_row(w, p)
