@@ -48,10 +48,13 @@ def compiled(**options: Any) -> Callable[[Function], Function]:
 
 
 def is_kept(function: Callable[..., Any]) -> bool:
-    """Return whether machine code of a compiled function is on disk."""
+    """Return whether machine code of a compiled function is on disk.
+
+    True where none can be: no process then compiles for others.
+    """
     cache = getattr(function, "_cache", None)
     if not isinstance(cache, _SourceCache):
-        return False
+        return True
     cache._stamp()
     try:
         return bool(cache._cache_file._load_index())

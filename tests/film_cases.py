@@ -138,22 +138,32 @@ def film_at(case: Case, position: Sequence[float], speed: float = 100.0) -> Film
 
 
 def assert_derivatives(state: FilmState) -> None:
-    """Compare K and C of the film with central differences of its forces, as energies."""
+    """Compare K and C of the film with central differences of its forces, as energies.
+
+    They are taken where no cell ruptures or fills: one that is near it shortens the step.
+    """
     scales = state.problem.geometry.displacements.scales
-    carrying = state.solution.carrying
 
     def force(q, velocity=None):
         start = state.solution.full
         moved = film_state(state.problem, q, state.layers, velocity=velocity, start=start)
-        np.testing.assert_array_equal(moved.solution.carrying, carrying)
-        return moved.force
+        same = np.array_equal(moved.solution.carrying, state.solution.carrying)
+        return moved.force if same else np.full(scales.size, np.nan)
+
+    def columns(axis, size):
+        step = size * scales[axis] * np.eye(scales.size)[axis]
+        q, rate = state.displacement, step * state.problem.speed
+        return np.array([
+            (force(q - step) - force(q + step)) / (2.0 * step[axis]),
+            (force(q, -rate) - force(q, rate)) / (2.0 * rate[axis]),
+        ])  # fmt: skip
 
     k, c = np.empty((2, scales.size, scales.size))
-    for axis, scale in enumerate(scales):
-        step = STEP * scale * np.eye(scales.size)[axis]
-        q, rate = state.displacement, step * state.problem.speed
-        k[:, axis] = (force(q - step) - force(q + step)) / (2.0 * step[axis])
-        c[:, axis] = (force(q, -rate) - force(q, rate)) / (2.0 * rate[axis])
+    for axis in range(scales.size):
+        for size in (STEP, STEP / 4.0, STEP / 16.0, STEP / 64.0):
+            k[:, axis], c[:, axis] = columns(axis, size)
+            if np.isfinite(k[:, axis]).all() and np.isfinite(c[:, axis]).all():
+                break
     weights = np.outer(scales, scales)
     for found, wanted in zip(linearize(state), (k, c), strict=True):
         np.testing.assert_allclose(

@@ -16,7 +16,7 @@ from ..bearing.interpolation import Coefficients
 from ..errors import InputError
 from ..rotor import Rotor
 from .machine import Machine
-from .matrices import first_order, massive_unknowns, state_matrix
+from .matrices import base_force, first_order, massive_unknowns, state_matrix
 from .support import ConstantSupport
 
 if TYPE_CHECKING:
@@ -444,15 +444,7 @@ def _disturbance(plant: Machine, kind: str, speed: float, mass: Array) -> Array:
         force = np.zeros((plant.size, 2))
         force[: plant.rotor.size] = np.column_stack([np.real(own), -np.imag(own)])
         return force
-    moved = [
-        [float(unknown.endswith(axis) and not unknown.startswith("theta")) for axis in "xy"]
-        for _, unknown in plant.unknowns
-    ]
-    # what a film or a seal adds to the rotor's mass moves with it against the base
-    own = mass.copy()
-    own[: plant.rotor.size] = 0.0
-    own[: plant.rotor.size, : plant.rotor.size] = plant.rotor.mass
-    return -own @ np.array(moved)
+    return base_force(mass, plant.rotor.mass, plant.unknowns)
 
 
 def signal_name(node: str) -> str:

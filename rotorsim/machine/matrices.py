@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -33,6 +35,23 @@ def state_matrix(stiffness: ArrayLike, damping: ArrayLike, mass: ArrayLike) -> A
     a[..., 2:, :2] = -k / m[..., None, None]
     a[..., 2:, 2:] = -c / m[..., None, None]
     return a
+
+
+def base_force(mass: Array, rotor_mass: Array, unknowns: Sequence[tuple[str, str]]) -> Array:
+    """Return the forces (n, 2) of unit accelerations of the base along x and y [N/(m/s2)].
+
+    mass : (n, n) array. Of everything, the rotor's unknowns first. What films and seals add to the
+        rotor's own mass moves with it against the base, which does not drive it.
+    unknowns : Node and name of each.
+    """
+    own, size = mass.copy(), len(rotor_mass)
+    own[:size] = 0.0
+    own[:size, :size] = rotor_mass
+    moved = [
+        [float(name.endswith(axis) and not name.startswith("theta")) for axis in "xy"]
+        for _, name in unknowns
+    ]
+    return -own @ np.array(moved)
 
 
 def massive_unknowns(mass: Array) -> Indices:

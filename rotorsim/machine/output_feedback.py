@@ -17,15 +17,12 @@ import numpy as np
 
 from ..arrays import Array, ComplexArray
 from ..errors import InputError
+from ..model.machine import MOST_WAITING
 from ..threads import on_one_blas_thread
 from .reduction import probing_frequencies, response
 
 if TYPE_CHECKING:
     import control
-
-
-MOST_WAITING = 50
-"""Sample times that a delay may last: each waiting force is a state of the sampled loop."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -242,6 +242,10 @@ class MachineTolerances:
     seed: Annotated[int, Number(least=0, most=2**31)] = 0
 
 
+MOST_WAITING = 50
+"""Sample times that a delay may last: each waiting force is a state of the sampled loop."""
+
+
 @dataclass(frozen=True)
 class MachineControl:
     """Active magnetic actuators and the sensors that they listen to.
@@ -278,9 +282,11 @@ class MachineControl:
     def __post_init__(self) -> None:
         if self.delay and self.sample_time is None:
             raise InputError('goes with a sample_time: "100 us", say', key="control.delay")
-        if self.sample_time is not None and self.delay > 50.0 * self.sample_time:
+        if self.sample_time is not None and self.delay > MOST_WAITING * self.sample_time:
             raise InputError(
-                "must be at most 50 sample times (s)", key="control.delay", value=self.delay
+                f"must be at most {MOST_WAITING} sample times (s)",
+                key="control.delay",
+                value=self.delay,
             )
 
 

@@ -38,12 +38,14 @@ class Loop:
 
     rows : (p, 2 n) array. From unknowns and their rates to the sensors; `offset` (p,) is taken off.
     size : Unknowns without those of the controller.
+    driven : Displacements of the whole machine, by number, that the actuators push.
     """
 
     feedback: OutputFeedback
     rows: Array
     offset: Array
     size: int
+    driven: tuple[int, ...]
 
     def measured(self, q: Array, v: Array) -> Array:
         """Return what the sensors read (..., p), from (..., n) displacements and rates."""
@@ -71,7 +73,7 @@ class Signals(NamedTuple):
 
     @property
     def places(self) -> set[int]:
-        """All of them."""
+        """Return the numbers of all of them."""
         return {*self.measured, *self.driven}
 
     def rows(self, basis: Array) -> Array:
@@ -125,9 +127,12 @@ def closed_eigenvalues(
     return replace(feedback, sensors=()).eigenvalues(system)
 
 
-def with_controller(    problem: MotionProblem, feedback: OutputFeedback, rest: Array,
+def with_controller(
+    problem: MotionProblem,
+    feedback: OutputFeedback,
+    rest: Array,
     names: Sequence[tuple[str, str]],
-) -> MotionProblem:  # fmt: skip
+) -> MotionProblem:
     """Return the motion with a controller that measures from a rest position.
 
     rest : (n,) array. Displacements at which the sensors read 0, so that no static load is carried.
@@ -140,7 +145,7 @@ def with_controller(    problem: MotionProblem, feedback: OutputFeedback, rest: 
         raise InputError("needs a prescribed speed, no torque", key="controller.sample_time")
     acting = system.basis[list(signals.driven)].T
     rows = signals.rows(system.basis)
-    loop = Loop(feedback, rows, rows[:, :n] @ rest, n)
+    loop = Loop(feedback, rows, rows[:, :n] @ rest, n, signals.driven)
     more = len(feedback.actuators) if dt else len(feedback.a)
     a, b, c, d, w = feedback.a, feedback.b, feedback.c, feedback.d, feedback.w
     wider: dict[str, Any] = {

@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array, Indices
 from ..errors import InputError
 from ..threads import on_one_blas_thread
-from .controlled import Advance, Answer, Loop, Sampled, signals_of
+from .controlled import Advance, Answer, Loop, Sampled
 from .kernels import shaft
 from .march import DONE, TOUCHED, march, repeat
 from .orbit import Orbit, OrbitEvent, OrbitStatus
@@ -275,7 +275,7 @@ class Motion:
         loop = self.problem.loop
         if loop is None:
             return np.zeros((self.t.size, 2))
-        driven = np.array(signals_of(loop.feedback, self.problem.system.names).driven)
+        driven = np.array(loop.driven)
         return self.actuator_force @ (driven[:, None] == np.array(rows)).astype(float)
 
     def ring_speed(self, name: str) -> Array:

@@ -130,12 +130,12 @@ class Orbit:
 
     @property
     def has_film(self) -> bool:
-        """Whether a film's force acts here."""
+        """Return whether a film's force acts here."""
         return bool(np.any(self.fx) or np.any(self.fy))
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Middle of the picture [m]: the bearing's, or where no film is the static position."""
+        """Return the middle of the picture [m]: the bearing's, without film the static position."""
         return (0.0, 0.0) if self.has_film else self.equilibrium
 
     @property

@@ -132,16 +132,15 @@ def study_machine_control(
     while True:
         reduction = reduced(system, share)
         feedback = _designed(reduction.system, settings, speed)
-        growth = float(feedback.eigenvalues(system)[0].real)
+        controlled = feedback.eigenvalues(system)
+        growth = float(controlled[0].real)
         left_out = reduction.system.nstates < system.nstates
         if growth < 0.0 or not left_out or share < _LEAST_ERROR:
             break
         # What the reduced model leaves out is excited by the feedback: leave out less.
         share /= 10.0
     passive = _least_stable_first(np.asarray(system.A))
-    if feedback.sample_time:
-        controlled = feedback.eigenvalues(system)
-    else:
+    if not feedback.sample_time:
         controlled = _least_stable_first(feedback.closed_loop(system)[0])
     runs: list[LinearMotion | None] = [None, None]
     if revolutions:

@@ -13,6 +13,7 @@ from ..arrays import Array, ComplexArray, Indices
 from ..errors import InputError
 from ..files.machine import MachineFile
 from ..machine.machine import Machine
+from ..machine.matrices import base_force
 from ..machine.output_feedback import OutputFeedback
 from ..machine.peaks import node_at
 from ..model.machine_orbit import MachineOrbit
@@ -166,10 +167,8 @@ class _Builder(MotionParts):
             whole["damping"][np.ix_(at, at)] += damping
         for mount, at in zip(linear.mounts, linear.places, strict=True):
             whole["mass"][at[:, None], at] += mount.support.matrices(self.top)[2]
-        # what supports add to the rotor's mass moves with it against the base
-        shaken = whole["mass"].copy()
-        shaken[:size] = 0.0
-        shaken[:size, :size] = rotor.mass
+        names = self._names(linear)
+        shaken = base_force(whole["mass"], rotor.mass, names)
         static = np.pad(self.static_force(self.first), (0, total - size))
         for at, force in self.preload:
             static[at] += force
@@ -186,7 +185,7 @@ class _Builder(MotionParts):
             **matrices, constant=constant, scale=scale, basis=basis, offset=offset,
             unbalance=self._unbalance(basis, total), links=links,
             block=linear_block(self, linear, place, {}), loads=self._loads(basis, shaken),
-            names=self._names(linear),
+            names=names,
             turned_offset=basis.T @ (whole["circulatory"] @ offset),
         )  # fmt: skip
         rest = rest_position(self, system)
@@ -261,7 +260,7 @@ class _Builder(MotionParts):
             found.append((entry.start, basis.T @ amount))
         return tuple(found)
 
-    def _loads(self, basis: Array, mass: Array) -> tuple[Harmonic, ...]:
+    def _loads(self, basis: Array, shaken: Array) -> tuple[Harmonic, ...]:
         settings, found = self.settings, []
         for entry in (*settings.step, *settings.harmonic):
             amplitude = np.zeros(basis.shape[0], dtype=complex)
@@ -271,31 +270,21 @@ class _Builder(MotionParts):
             frequency = getattr(entry, "frequency", 0.0)
             forces = np.asarray(basis.T @ amplitude, dtype=complex)
             found.append(Harmonic(forces, frequency, entry.start, entry.stop))
-        along = np.zeros((2, basis.shape[0]))
-        for axis in (0, 1):
-            along[axis, self.rotor.first_unknown + axis] = 1.0
-            along[axis, self.rotor.size :] = [
-                float(unknown.endswith("xy"[axis]) and not unknown.startswith("theta"))
-                for _, unknown in self._own_names()
-            ]
         if settings.base_motion is not None:
             base = settings.base_motion
             moved = np.array(base.displacement) * np.exp(1j * np.array(base.phase))
-            force = base.frequency**2 * (mass @ (moved @ along))
+            force = -(base.frequency**2) * (shaken @ moved)
             forces = np.asarray(basis.T @ force, dtype=complex)
             found.append(Harmonic(forces, base.frequency, base.start, base.stop))
         if settings.base_shock is not None:
             shock = settings.base_shock
             frequency = math.pi / shock.duration
             turned = 1j * np.exp(-1j * frequency * shock.start)
-            force = mass @ (np.array(shock.acceleration) @ along) * turned
+            force = -(shaken @ np.array(shock.acceleration)) * turned
             found.append(
                 Harmonic(basis.T @ force, frequency, shock.start, shock.start + shock.duration)
             )
         return tuple(found)
-
-    def _own_names(self) -> list[tuple[str, str]]:
-        return [*self.linear_names, *((name, unknown) for name, unknown, _ in self.own)]
 
     def _reduction_error(
         self, system: MotionSystem, rest: Array, still: Array, whole: dict[str, Array],

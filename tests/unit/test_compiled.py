@@ -17,6 +17,7 @@ from rotorsim.orbit.march import march
 from rotorsim.rotor import Rotor
 
 PACKAGE = Path(rotorsim.__file__).parents[1]
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
 CALLED = (
     "from rotorsim.compiled import compiled\nSCALE = 2.0\n@compiled()\ndef called(x): return {}\n"
 )
@@ -119,7 +120,7 @@ def test_the_main_job_compiles_ahead(tmp_path: Path):
         "from rotorsim import load_scenario; from rotorsim.compiled import is_kept\n"
         "from rotorsim.machine.rates import _fill_rates; from rotorsim.orbit.march import march\n"
         "from rotorsim.study.main_job import compiled_ahead\n"
-        f"with compiled_ahead(load_scenario({str(PACKAGE / 'scenarios' / 'dal.toml')!r})):\n"
+        f"with compiled_ahead(load_scenario({str(SCENARIOS / 'dal.toml')!r})):\n"
         "    print(is_kept(march))\n"
         "print(is_kept(march), is_kept(_fill_rates))"
     )
