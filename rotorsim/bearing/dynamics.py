@@ -337,7 +337,7 @@ def pad_mass(bearing: Bearing) -> Array:
 
 
 def _add_bending_mass(mass: Array, bearing: Bearing, number: int, unknowns: PadUnknowns) -> None:
-    """Return the radial motion of a pad that bends, with its tilt and its pivot's displacement."""
+    """Add the mass of a pad's bending, and what couples it with its tilt and its pivot."""
     pad, first = bearing.pads[number], unknowns.bends[0]
     whole, arm = _inertia(bearing, number).mass, bearing.journal_radius + pad.thickness
     for side in pad_bending(pad, bearing.journal_radius, bearing.length):

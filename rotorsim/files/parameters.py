@@ -100,7 +100,7 @@ class Parameter:
 
     @property
     def sign(self) -> str:
-        """Of its values; see `rotorsim.model.entries.Quantity`."""
+        """Sign of its values; see `rotorsim.model.entries.Quantity`."""
         return PARAMETERS[self.kind].sign
 
     def read(self, text: object, key: str) -> float:

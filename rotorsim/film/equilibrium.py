@@ -125,12 +125,12 @@ class FixedRatio:
     unreachable: bool = False
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
-        """Return the that position."""
+        """Return that position."""
         del state
         return np.array([self.eccentricity_ratio * self.clearance, 0.0]), 0.0
 
     def allowed(self, _old: Array, _new: Array, /) -> Array:
-        """Return the that position."""
+        """Return that position."""
         return np.array([self.eccentricity_ratio * self.clearance, 0.0])
 
     def grown(self, problem: FilmProblem) -> None:

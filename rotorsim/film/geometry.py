@@ -63,7 +63,7 @@ class Displacements:
     scales: Array
 
     def joined(self, others: Displacements) -> Displacements:
-        """Return the these displacements and, behind them, the `others`."""
+        """Return these displacements and, behind them, the `others`."""
         return Displacements(
             self.names + others.names,
             np.concatenate([self.shapes, others.shapes]),
@@ -168,7 +168,7 @@ class PadUnknowns:
 
     @property
     def places(self) -> list[int]:
-        """All of them."""
+        """Places of all of them."""
         single = [place for place in (self.tilt, self.pivot, self.pitch) if place is not None]
         return [*single, *self.bends]
 

@@ -244,7 +244,7 @@ class _Pool:
 
     @property
     def hot(self) -> Array:
-        """Of the oil that arrives, what can enter the next film."""
+        """Flow of the oil that arrives and can enter the next film [m3/s]."""
         return self.carry_over * self.given
 
     def mixed(self, hot: Array, fresh: Array, bath: Array | float = 0.0, at: float = 0.0) -> Array:

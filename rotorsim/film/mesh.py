@@ -221,7 +221,7 @@ def groove_edges(groove: Groove) -> tuple[float, float]:
 
 
 def in_full_groove(bearing: Bearing, theta: Array) -> Booleans:
-    """Return the which angles lie inside a full-length groove."""
+    """Return whether each angle lies inside a full-length groove."""
     inside = np.zeros(theta.shape, dtype=bool)
     for groove in bearing.grooves:
         if bearing.spans_length(groove):
@@ -287,7 +287,7 @@ def _axial_faces(bearing: Bearing, y_faces: Array) -> Array:
 def _supply_cells(
     bearing: Bearing, theta_faces: Array, y_faces: Array
 ) -> tuple[NDArray[np.int64], Array]:
-    """Return the which cells are groove; axial faces are moved onto the ends of partial grooves."""
+    """Return each cell's groove, and the axial faces moved onto the ends of partial grooves."""
     y_faces = y_faces.copy()
     for groove in bearing.grooves:
         if groove.length is None or bearing.spans_length(groove):

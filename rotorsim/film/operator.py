@@ -82,7 +82,7 @@ class StepFaces:
 
     @property
     def conductance(self) -> Array:
-        """Of both half cells in a row [m3/(s Pa)]."""
+        """Conductance of both half cells in a row [m3/(s Pa)]."""
         return self.own * self.share
 
     @property

@@ -49,7 +49,7 @@ def displacement_sources(state: FilmState, shapes: Array) -> Array:
 
 
 def _add_step_sources(state: FilmState, steps: StepFaces, shapes: Array, sources: Array) -> None:
-    """Return what displacements change at steps, where either side has its own film thickness."""
+    """Add what displacements change at steps, where either side has its own film thickness."""
     layers, along, pressure = state.layers, steps.at[0] < 2, state.solution.raw
     share, changes = steps.share, []
     for place in (steps.at, steps.beyond):

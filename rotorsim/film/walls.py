@@ -64,7 +64,7 @@ class FilmContact:
 
     @property
     def area(self) -> Array:
-        """Of each cell [m2], (n, m)."""
+        """Area of each cell [m2], (n, m)."""
         return self.energy.dx[:, None] * self.energy.dy
 
     def heat(self, wall: Array | float) -> Array:

@@ -77,7 +77,7 @@ class Modes:
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """Of each parameter; see `Verdict`."""
+        """Verdict of each parameter."""
         names = {1.0: Verdict.UNSTABLE, -1.0: Verdict.STABLE, 0.0: Verdict.UNDAMPED}
         return tuple(names[float(sign)] for sign in np.sign(self.largest_growth_rate))
 

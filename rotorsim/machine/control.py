@@ -302,7 +302,7 @@ class _FilmForce(Protocol):
 
     @property
     def name(self) -> str:
-        """Of the force model."""
+        """Name of the force model."""
         ...
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:
@@ -339,7 +339,7 @@ class ActuatedForce:
 
     @property
     def name(self) -> str:
-        """Of the force model."""
+        """Name of the force model."""
         return f"{self.film.name} with actuator"
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:

@@ -262,7 +262,7 @@ def _largest_real_part(
 
 @compiled(error_model="numpy")
 def _fill_row(k: np.ndarray, c: np.ndarray, mass: np.ndarray, rate: np.ndarray) -> None:
-    """Return growth rates of one operating point, (4,) stiffness and damping, with every mass."""
+    """Fill in growth rates of one operating point, (4,) stiffness and damping, with every mass."""
     # The differences are formed before anything is scaled, so that nearly like modes stay exact.
     dc, dk = 0.5 * (c[0] - c[3]), 0.5 * (k[0] - k[3])
     n2 = dc * dc + c[1] * c[2]

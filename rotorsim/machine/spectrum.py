@@ -316,7 +316,7 @@ class _Krylov:
 
     @property
     def norm(self) -> float:
-        """Of the inverse on the space."""
+        """Norm of the inverse on the space."""
         return float(np.linalg.norm(self.hessenberg[: self.size, : self.size]))
 
     def ritz(self, size: int) -> tuple[ComplexArray, ComplexArray, Array]:

@@ -263,7 +263,7 @@ class _Around(Support):
 
     @property
     def speeds(self) -> Array:
-        """Of the inner support [rad/s]."""
+        """Tabulated speeds of the inner support [rad/s]."""
         return self.inner.speeds
 
 

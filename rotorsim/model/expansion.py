@@ -91,7 +91,7 @@ class Expansion:
     def pad_growth(
         self, inner: float, thickness: float, temperature: float, gradient: float
     ) -> tuple[float, float]:
-        """Return the by how much a pad's machined and assembled clearance grow [m].
+        """Return by how much a pad's machined and assembled clearance grow [m].
 
         The pad grows from its back, where the pivot stands, and opens under a temperature that
         falls outwards: a circle of radius r_m (1 - alpha r_m dT/dr) at mid-thickness, free of

@@ -31,7 +31,7 @@ class BearingForce(Protocol):
 
     @property
     def name(self) -> str:
-        """Of the force model, for labels."""
+        """Name of the force model, for labels."""
         ...
 
     def force(self, x: float, y: float, vx: float, vy: float, speed: float) -> tuple[float, float]:

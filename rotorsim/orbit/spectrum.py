@@ -83,7 +83,7 @@ class Ellipse:
 
     @property
     def inclination(self) -> float:
-        """Of the major axis, from x in the direction of rotation, -pi/2 to pi/2 [rad]."""
+        """Angle of the major axis from x in the direction of rotation, -pi/2 to pi/2 [rad]."""
         angle = 0.5 * float(np.angle(self.forward) + np.angle(self.backward))
         return (angle + 0.5 * np.pi) % np.pi - 0.5 * np.pi
 

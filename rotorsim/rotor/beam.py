@@ -120,7 +120,7 @@ class Beam:
 
     @property
     def length(self) -> float:
-        """Of the shaft [m]."""
+        """Length of the shaft [m]."""
         return sum(section.length for section in self.sections if section.layer == 1)
 
     def check_place(self, at: float, key: str) -> None:

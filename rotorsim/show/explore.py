@@ -216,7 +216,7 @@ class _Page:
         context.client.on_disconnect(lambda: [task.cancel() for task in self.tasks])
 
     def fields(self) -> None:
-        """Return a slider and a number for each entry, in the units shown."""
+        """Build a slider and a number for each entry, in the units shown."""
         from nicegui import ui
 
         self.panel.clear()

@@ -73,7 +73,7 @@ class MachineControlStudy:
 
     @property
     def largest_force(self) -> float | None:
-        """Of one axis of an actuator in the run [N]."""
+        """Largest force of one axis of an actuator in the run [N]."""
         return None if self.controlled is None else float(np.abs(self.controlled.force).max())
 
     @property

@@ -129,7 +129,7 @@ def rest_position(parts: MotionParts, system: MotionSystem) -> Array:
 
 
 def _hung(parts: MotionParts, system: MotionSystem, guess: Array) -> None:
-    """Return a guess of the journals' places: each film under its own load."""
+    """Guess the journals' places in `guess`: each film under its own load."""
     assert parts.reactions is not None
     names = parts.machine.support_names
     for link in system.links:

@@ -323,7 +323,7 @@ class FilmFrame:
 
     @property
     def length(self) -> float:
-        """Of the bearing [m]."""
+        """Length of the bearing [m]."""
         return float(self.y[-1] - self.y[0]) * self.y.size / (self.y.size - 1)
 
 

@@ -60,13 +60,13 @@ class Plane:
 
     @property
     def names(self) -> tuple[str, str]:
-        """Of x and y as they are written: of a machine ``left.radial_clearance``."""
+        """Names of x and y as they are written: of a machine ``left.radial_clearance``."""
         x, y = (str(self.dataset[n].attrs.get("parameter", n)) for n in (self.x, self.y))
         return x, y
 
     @property
     def file_name(self) -> str:
-        """Of its files, without a suffix."""
+        """Name of its files, without a suffix."""
         return re.sub(r"[^\w.-]+", "_", f"map_{self.x}_{self.y}")
 
     @property

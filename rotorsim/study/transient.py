@@ -51,7 +51,7 @@ class Transient:
 
     @cached_property
     def time(self) -> Array:
-        """Of the moments [s]."""
+        """Times of the moments [s]."""
         return np.array([step.time for step in self.steps])
 
     @property

@@ -309,7 +309,7 @@ def _contours(
 
 
 def _mark_turbulence(ax: Axes, film: FilmFields) -> None:
-    """Return dots where the film is in transition, crosses where it is turbulent."""
+    """Draw dots where the film is in transition, crosses where it is turbulent."""
     if not film.turbulence.max() > 0.0:
         return
     angle, order = _angles(film.theta)

@@ -120,7 +120,7 @@ def _label(ax: Axes, x: float, y: float, text: str, color: str, vertical: str) -
 
 
 def _key(ax: Axes, machine: MachineFile) -> None:
-    """Return the legend of what the file has, below the drawing."""
+    """Draw the legend of what the file has, below the drawing."""
     ax.plot([], [], "^", mfc="w", mec=_SUPPORT, ms=8, ls="", label="bearing")
     if machine.seal:
         ax.plot([], [], color=_SEAL, lw=3.0, label="seal")

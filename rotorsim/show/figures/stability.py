@@ -157,7 +157,7 @@ _SENSES = (("^", "whirls forward", 1.0), ("v", "whirls backward", -1.0))
 
 
 def _mark_whirl(ax: Axes, curve: Campbell) -> None:
-    """Return triangles along the branches for the sense of whirl, crosses at the thresholds."""
+    """Draw triangles along the branches for the sense of whirl, crosses at the thresholds."""
     colour = model_style(curve.choices["thermal_model"])["color"]
     values, rpm = curve.branches.eigenvalues, curve.branches.parameter * RPM
     hertz = np.where(values.imag > 0.0, values.imag, np.nan) / (2 * np.pi)

@@ -88,7 +88,7 @@ class _Show:
 
     @property
     def times(self) -> Array:
-        """Of all frames [s]."""
+        """Times of all frames [s]."""
         return np.arange(self.places.size * _FRAMES, dtype=float) * (_SECONDS / _FRAMES)
 
     def _chosen(self, modes: Modes) -> list[int]:
@@ -163,7 +163,7 @@ class _Show:
         return "\n".join(lines)
 
     def _log_rotor(self, stream: rr.RecordingStream) -> None:
-        """Return the rotor at rest, its bearings and probes."""
+        """Log the rotor at rest, its bearings and probes."""
         z, radius = self.profile
         vertices = _surface(z, radius, np.zeros((z.size, 2)))
         stream.log(
@@ -179,7 +179,7 @@ class _Show:
             _log_places(stream, f"modes/{number_}", self.last, self.length)
 
     def _log_mode(self, stream: rr.RecordingStream, root: str, branch: int) -> None:
-        """Return one mode: the deflected rotor over the clock, and from speed to speed."""
+        """Log one mode: the deflected rotor over the clock, and from speed to speed."""
         assert self.modes is not None
         modes, rotor = self.modes, self.last.machine.rotor
         positions = np.array([node.position for node in rotor.nodes]) * surfaces.MILLI
@@ -240,7 +240,7 @@ class _Show:
             stream.send_columns(f"{root}/words", [index], rr.Points3D.columns(labels=words))
 
     def _send_campbell(self, stream: rr.RecordingStream, chart: Chart) -> None:
-        """Return a line at the speed shown, and the frequencies on it."""
+        """Log a line at the speed shown, and the frequencies on it."""
         assert self.modes is not None
         low, high = chart.axes.get_ylim()
         starts = time_index(self.times[np.arange(self.places.size) * _FRAMES])
@@ -364,7 +364,7 @@ def _shade(rings: int) -> Array:
 def _log_places(
     stream: rr.RecordingStream, root: str, result: MachineResult, length: float
 ) -> None:
-    """Return bearings as rings with their names; probes as arrows."""
+    """Log bearings as rings with their names, probes as arrows."""
     machine = result.description
     names = machine.support_names
     places = [entry.at * surfaces.MILLI for entry in machine.support]

@@ -229,7 +229,7 @@ def entity_name(name: str) -> str:
 
 
 def _log_disc(stream: rr.RecordingStream, entity: str, radius: float, width: float) -> None:
-    """Return disc about the shaft's axis, one twelfth of it marked so that its rotation shows."""
+    """Log a disc about the shaft's axis, one twelfth of it marked so that its rotation shows."""
     vertices, triangles, normals = cylinder(radius * MILLI, 0.5 * width * MILLI)
     turned = np.roll(vertices, 1, axis=1)  # its axis along the shaft
     angle = np.arctan2(turned[:, 1], -turned[:, 2])
