@@ -113,8 +113,8 @@ def test_the_page_follows_a_value_and_asks_no_other_host(tmp_path):
                 "{const f = document.querySelector('input[aria-label=\"Radial clearance\"]');"
                 "f.value = '130'; f.dispatchEvent(new Event('input', {bubbles: true})); 1}"
             )
-            _until(lambda: asked(_NUMBERS) != before)
-            assert "65" in asked(_NUMBERS).split()  # (1 - 0.5) of 130 µm
+            # (1 - 0.5) of 130 µm; on a busy machine numbers of the old clearance still arrive
+            _until(lambda: asked(_NUMBERS) != before and "65" in asked(_NUMBERS).split())
             width = asked("document.documentElement.scrollWidth - innerWidth")
             events = pipe.events
         requested = [
