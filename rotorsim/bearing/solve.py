@@ -25,8 +25,9 @@ from ..film.losses import (
     supply_flow,
 )
 from ..film.pad_solution import solve_pads
-from ..film.solution import FilmSolution, WallsOf, WarmStart, solve_film
+from ..film.solution import FilmSolution, WallsOf, solve_film
 from ..film.walls import choose_walls
+from ..film.warm_start import WarmStart
 from ..model import Bearing, Case, Cavitation, InletModel, LoadTarget, ViscosityResponse
 from ..model.entries import Quantity
 from ..model.operating import is_unloaded

@@ -15,8 +15,9 @@ import numpy as np
 
 from ..arrays import Array
 from ..film.banded import NoFilmError, SingularFilmError
-from ..film.solution import FilmSolution, WarmStart
+from ..film.solution import FilmSolution
 from ..film.storage import HeatStep, HeatStorage, SolidState
+from ..film.warm_start import WarmStart
 from ..model import Case, ThermalModel
 from ..status import SolveStatus
 from .operating_point import OperatingPoint, failed_point

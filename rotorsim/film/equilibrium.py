@@ -23,6 +23,8 @@ CLEARANCE_KEPT = 5e-4
 """Thinnest film, relative to the clearance, to which a step may take a journal."""
 _SHORTEST_STEP = 1e-4
 """Part of a step below which none helps."""
+_SAME_FORCE = 2e-3
+"""Relative change of the forces up to which Newton's method keeps the stiffness."""
 
 
 @dataclass
@@ -81,6 +83,7 @@ class LoadSearch:
     clearance: float
     geometry: FilmGeometry
     unreachable: bool = False
+    _known: tuple[FilmState, Array] | None = None
 
     def __call__(self, state: FilmState) -> tuple[Array, float]:
         """Return Newton's next displacements, and the force's error over the load."""
@@ -88,7 +91,7 @@ class LoadSearch:
         missing = (state.force + self.load) * scales
         size = math.hypot(*(self.load * scales)) or pressure_force(state)
         off = math.hypot(*missing) / size
-        stiffness = stiffness_matrix(state) * scales[:, None] * scales[None, :]
+        stiffness = self._stiffness(state) * scales[:, None] * scales[None, :]
         step = scales * _newton_step(stiffness, missing, self.clearance)
         following = self.allowed(state.displacement, state.displacement + step)
         pinned = state.min_thickness <= 2.0 * CLEARANCE_KEPT * self.clearance
@@ -103,13 +106,24 @@ class LoadSearch:
         step = new - old
         scales = self.geometry.displacements.scales / self.clearance
         length = math.hypot(*(step / scales))
-        scale = min(1.0, 0.2 * self.clearance / length) if length > 0.0 else 1.0
+        if length == 0.0:
+            return new
+        scale = min(1.0, 0.2 * self.clearance / length)
         floor = max(0.4 * self.geometry.thinnest_at(old), CLEARANCE_KEPT * self.clearance)
         while scale > 1e-4 and self.geometry.thinnest_at(old + scale * step) < floor:
             scale *= 0.7
         if scale <= 1e-4:
             return old
         return new if scale == 1.0 else old + scale * step
+
+    def _stiffness(self, state: FilmState) -> Array:
+        """Return the film's stiffness; that of the last film whose forces were nearly the same."""
+        if self._known is not None and self._known[0].problem is state.problem:
+            change = np.abs(state.force - self._known[0].force)
+            if change.max() < _SAME_FORCE * np.abs(state.force).max():
+                return self._known[1]
+        self._known = state, stiffness_matrix(state)
+        return self._known[1]
 
     def grown(self, problem: FilmProblem) -> None:
         """Take over the clearance of `problem`."""

@@ -12,7 +12,8 @@ from ..arrays import Array, Booleans
 from ..model import Feed, InletModel
 from .energy import EnergyProblem, dissipation
 from .flow import FilmFlow, film_flow
-from .operator import EAST, NORTH, SOUTH, WEST
+from .kernels import kernel
+from .operator import EAST, NORTH, SOUTH, WEST, neighbour
 from .problem import FilmProblem, FilmState
 from .walls import FilmContact, Walls
 
@@ -122,27 +123,84 @@ def _march_order(problem: FilmProblem, flow: FilmFlow) -> NDArray[np.int64]:
 
 def _layer_fluxes(energy: EnergyProblem, face: int, cells: Booleans) -> Array:
     """Return every layer's flux [m3/s] through one face of the chosen cells, (cells, k)."""
-    flow, layers = energy.flow, energy.layers
     i, j = np.nonzero(cells)
-    n, m = cells.shape
-    far_i = (i + {WEST: -1, EAST: 1}.get(face, 0)) % n
-    far_j = np.clip(j + {SOUTH: -1, NORTH: 1}.get(face, 0), 0, m - 1)
-    shares = layers.pressure_share
-    if face in (SOUTH, NORTH) and layers.turbulent is not None:
-        shares = layers.turbulent.axial_share
-    share_a, share_b = shares[i, j], layers.shear_share[i, j]
-    far_a, far_b = shares[far_i, far_j], layers.shear_share[far_i, far_j]
-    shared = flow.shared[face][i, j][:, None]
-    if face == WEST:
-        # A ruptured column passes on its own profile.
-        passed = (~flow.shared[face] & energy.interior[face] & ~flow.inlet)[i, j][:, None]
-        share_b = np.where(passed, far_b, share_b)
-    share_a = np.where(shared, 0.5 * (share_a + far_a), share_a)
-    share_b = np.where(shared, 0.5 * (share_b + far_b), share_b)
-    flux = flow.poiseuille[face][i, j][:, None] * share_a
-    if face in (WEST, EAST):
-        flux = flux + flow.couette[face][i, j][:, None] * share_b
+    fluxes = np.empty((i.size, energy.layers.shear_share.shape[2]))
+    _fill_fluxes(face, i, j, *_carriers(energy), fluxes)
+    return fluxes
+
+
+def _carriers(
+    energy: EnergyProblem,
+) -> tuple[Array, Array, Booleans, Booleans, Booleans, Array, Array, Array]:
+    """Return what the kernels need to know of the flow through each layer's faces."""
+    flow, layers = energy.flow, energy.layers
+    along = layers.pressure_share
+    axial = along if layers.turbulent is None else layers.turbulent.axial_share
+    return (
+        flow.poiseuille, flow.couette, flow.shared, energy.interior, flow.inlet, along, axial,
+        layers.shear_share,
+    )  # fmt: skip
+
+
+@kernel
+def _layer_flux(
+    face, i, j, far_i, far_j, k, poiseuille, couette, shared, interior, inlet, along, axial, shear
+):  # fmt: skip
+    """Return the flux [m3/s] through one face of a layer, along +theta or +y."""
+    share = along if face < 2 else axial
+    pressed, drawn = share[i, j, k], shear[i, j, k]
+    if shared[face, i, j]:
+        pressed = 0.5 * (pressed + share[far_i, far_j, k])
+        drawn = 0.5 * (drawn + shear[far_i, far_j, k])
+    elif face == 0 and interior[0, i, j] and not inlet[i, j]:
+        drawn = shear[far_i, far_j, k]  # a ruptured column passes on its own profile
+    flux = poiseuille[face, i, j] * pressed
+    if face < 2:
+        flux += couette[face, i, j] * drawn
     return flux
+
+
+@kernel
+def _fill_fluxes(
+    face, rows, columns, poiseuille, couette, shared, interior, inlet, along, axial, shear, fluxes
+):  # fmt: skip
+    n, m, layers = shear.shape
+    for cell in range(rows.size):
+        i, j = rows[cell], columns[cell]
+        far_i, far_j = neighbour(face, i, j, n, m)
+        for k in range(layers):
+            fluxes[cell, k] = _layer_flux(
+                face, i, j, far_i, far_j, k, poiseuille, couette, shared, interior, inlet,
+                along, axial, shear,
+            )  # fmt: skip
+
+
+@kernel
+def _exchange(
+    behind, temperature, supplied, fresh, poiseuille, couette, shared, interior, inlet, along,
+    axial, shear, pools,
+):  # fmt: skip
+    """Add up what films and grooves exchange: (4, g), see `_mixed`."""
+    _, n, m = behind.shape
+    for face in range(4):
+        inwards = -1.0 if face % 2 == 0 else 1.0
+        for i in range(n):
+            for j in range(m):
+                g = behind[face, i, j]
+                if g < 0:
+                    continue
+                far_i, far_j = neighbour(face, i, j, n, m)
+                for k in range(shear.shape[2]):
+                    into = inwards * _layer_flux(
+                        face, i, j, far_i, far_j, k, poiseuille, couette, shared, interior, inlet,
+                        along, axial, shear,
+                    )  # fmt: skip
+                    if into > 0.0:
+                        pools[1, g] += into * fresh[i, j]
+                        pools[2, g] += into * fresh[i, j] * temperature[i, j, k]
+                    else:
+                        pools[0, g] -= into
+                        pools[3, g] -= into * supplied[face, i, j]
 
 
 def inlet_temperatures(problem: FilmProblem, energy: EnergyProblem, temperature: Array) -> Array:
@@ -194,20 +252,11 @@ def _mixed(
     """
     groove_source = _groove_source(problem, energy)
     count = len(problem.bearing.grooves) + 1
-    taken, given, heat, supply = np.zeros((4, count))
-    for face in (WEST, EAST, SOUTH, NORTH):
-        open_ = groove_source[face] >= 0
-        number = groove_source[face][open_]
-        if not number.size:
-            continue
-        into = _layer_fluxes(energy, face, open_) * (-1.0 if face in (WEST, SOUTH) else 1.0)
-        leaving = np.maximum(-into, 0.0).sum(axis=1)
-        arriving = np.maximum(into, 0.0) * energy.flow.fresh_fraction[open_][:, None]
-        brought = np.sum(arriving * temperature[open_], axis=1)
-        given += np.bincount(number, arriving.sum(axis=1), count)
-        heat += np.bincount(number, brought, count)
-        taken += np.bincount(number, leaving, count)
-        supply += np.bincount(number, leaving * supplied[face][open_], count)
+    pools = np.zeros((4, count))
+    _exchange(
+        groove_source, temperature, supplied, energy.flow.fresh_fraction, *_carriers(energy), pools
+    )
+    taken, given, heat, supply = pools
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         cold = np.where(taken > 0.0, supply / taken, float(supplied.max()))
         pool = _Pool(taken, given, heat / given, cold, problem.thermal.hot_oil_carry_over)
@@ -324,18 +373,27 @@ def _groove_source(problem: FilmProblem, energy: EnergyProblem) -> NDArray[np.in
     A slot, or the start of a film that begins anywhere, counts as one groove more.
     """
     supply = problem.mesh.supply
-    grooves = len(problem.bearing.grooves)
-    groove_source = np.full((4, *supply.shape), -1, dtype=np.int64)
-    groove_source[WEST] = np.roll(supply, 1, axis=0)
-    groove_source[EAST] = np.roll(supply, -1, axis=0)
-    groove_source[SOUTH][:, 1:] = supply[:, :-1]
-    groove_source[NORTH][:, :-1] = supply[:, 1:]
-    inlet = energy.flow.inlet & (energy.carry_over < 1.0)
-    groove_source[WEST][inlet & (groove_source[WEST] < 0)] = grooves
-    after = np.roll(inlet & (np.roll(supply, 1, axis=0) < 0), -1, axis=0)
-    groove_source[EAST][after & (groove_source[EAST] < 0)] = grooves
-    groove_source[:, energy.fixed] = -1
+    groove_source = np.empty((4, *supply.shape), dtype=np.int64)
+    _number_grooves(
+        supply, energy.fixed, energy.flow.inlet & (energy.carry_over < 1.0),
+        len(problem.bearing.grooves), groove_source,
+    )  # fmt: skip
     return groove_source
+
+
+@kernel
+def _number_grooves(supply, fixed, begins, grooves, groove_source):
+    n, m = supply.shape
+    for face in range(4):
+        for i in range(n):
+            for j in range(m):
+                k, q = neighbour(face, i, j, n, m)
+                behind = supply[k, q]
+                if fixed[i, j] or (q == j and face > 1):
+                    behind = -1
+                elif behind < 0 and face < 2 and (begins[i, j] if face == 0 else begins[k, q]):
+                    behind = grooves
+                groove_source[face, i, j] = behind
 
 
 def with_groove_oil(problem: FilmProblem, temperature: Array, inlet_temperature: Array) -> Array:
@@ -408,24 +466,49 @@ def _enthalpy_out(
 
     Through all faces behind which no film lies.
     """
-    total = 0.0
-    before = np.roll(leaving[0], 1, axis=0)
-    for face, outward in ((WEST, -1.0), (EAST, 1.0), (SOUTH, -1.0), (NORTH, 1.0)):
-        out = temperature
-        if face == WEST:
-            open_ = energy.flow.inlet
-        elif face == EAST:
-            open_, out = _exits(energy), leaving[0]
-        else:
-            open_, out = ~energy.interior[face] & ~energy.fixed, leaving[1]
-        entering = inlet_temperature[face][open_]
-        if entering.ndim == 1:
-            entering = entering[:, None]
-        if face == WEST:
-            part = energy.carry_over[open_][:, None]
-            entering = part * before[open_] + (1.0 - part) * entering
-        flux = outward * _layer_fluxes(energy, face, open_)
-        total += float(
-            np.sum(np.maximum(flux, 0.0) * out[open_]) + np.sum(np.minimum(flux, 0.0) * entering)
+    entering = inlet_temperature
+    if entering.ndim == 3:
+        entering = entering[:, :, :, None]
+    return float(
+        _carried_out(
+            temperature, entering, leaving, energy.carry_over, energy.fixed, *_carriers(energy)
         )
+    )
+
+
+@kernel
+def _carried_out(
+    temperature, entering, leaving, carry_over, fixed, poiseuille, couette, shared, interior,
+    inlet, along, axial, shear,
+):  # fmt: skip
+    n, m, layers = temperature.shape
+    layered, total = entering.shape[3] > 1, 0.0
+    for face in range(4):
+        outwards = -1.0 if face % 2 == 0 else 1.0
+        for i in range(n):
+            before, after = i - 1 if i > 0 else n - 1, i + 1 if i < n - 1 else 0
+            for j in range(m):
+                if face == 0:
+                    open_ = inlet[i, j]
+                else:
+                    open_ = not interior[face, i, j] or (face == 1 and inlet[after, j])
+                    open_ = open_ and not fixed[i, j]
+                if not open_:
+                    continue
+                far_i, far_j = neighbour(face, i, j, n, m)
+                for k in range(layers):
+                    flux = outwards * _layer_flux(
+                        face, i, j, far_i, far_j, k, poiseuille, couette, shared, interior, inlet,
+                        along, axial, shear,
+                    )  # fmt: skip
+                    if flux <= 0.0:
+                        warmth = entering[face, i, j, k if layered else 0]
+                        if face == 0:
+                            part = carry_over[i, j]
+                            warmth = part * leaving[0, before, j, k] + (1.0 - part) * warmth
+                    elif face == 0:
+                        warmth = temperature[i, j, k]
+                    else:
+                        warmth = leaving[face // 2, i, j, k]
+                    total += flux * warmth
     return total

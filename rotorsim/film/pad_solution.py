@@ -17,9 +17,10 @@ from .heat import Heat
 from .layers import LayerIntegrals, layer_integrals
 from .pads import PadSearch
 from .problem import FilmProblem, FilmState, film_problem, film_state, supply_layers
-from .solution import FilmSolution, WallsOf, WarmStart
+from .solution import FilmSolution, WallsOf
 from .thd import ThermalFilm, packed, solve_thermal_film, uniform_heat, unpacked
 from .walls import choose_walls
+from .warm_start import WarmStart
 
 _FORCE_TOLERANCE = 1e-9
 """Of isothermal films: cross terms that vanish by symmetry are to vanish."""

@@ -6,10 +6,12 @@ import math
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from ..arrays import Array, Booleans
+from ..arrays import Array
+from ..errors import InputError
 from ..model import (
     Bearing,
     Case,
@@ -17,13 +19,14 @@ from ..model import (
     EccentricityTarget,
     Inception,
     LoadTarget,
+    MeshSize,
     ThermalModel,
 )
 from ..model.operating import is_unloaded
 from ..status import SolveStatus
+from .advice import NOT_FOUND, jump, nowhere, starved
 from .banded import NoFilmError, SingularFilmError
 from .equilibrium import (
-    CLEARANCE_KEPT,
     ECCENTRICITY_LIMITS,
     AttitudeSearch,
     Backtracking,
@@ -38,19 +41,21 @@ from .problem import FilmProblem, FilmState, film_problem, film_state, supply_la
 from .rupture import rupture_condition
 from .thd import (
     ROUGH_TOLERANCE,
+    TOLERANCE,
     ThermalFilm,
     solve_thermal_film,
-    uniform_heat,
 )
 from .walls import Walls, choose_walls
+from .warm_start import Position, WarmStart, turned
 
-_Position = tuple[float, float]
 WallsOf = Callable[[FilmProblem], Walls]
 """Makes the walls of a heated film's problem."""
 _Search = PlainSearch | LoadSearch | AttitudeSearch | FixedRatio
 
 _FORCE_TOLERANCE = 1e-8
 """Relative force residual at which the position counts as found."""
+_THERMAL_FORCE_TOLERANCE = 1e-6
+"""The same of a heated film, whose viscosity is known to `TOLERANCE`."""
 _MAX_POSITION_STEPS = 60
 _PATIENCE = 12
 """Steps after which each must reduce the force residual."""
@@ -62,22 +67,10 @@ _JUMP = 0.02
 """Unbalanced force next to a place where it turns round, relative to the load, that is a jump."""
 _MAX_MESHES = 8
 """Times that the mesh may be graded anew for the position found."""
-
-
-@dataclass(frozen=True)
-class WarmStart:
-    """First guess for the next speed; picklable.
-
-    position : Journal centre over the radial clearance, load frame.
-    full : (n, m) bool array. Cells of full film.
-    pads : array or None. Displacements of tilting pads, after the journal's, over the radial
-        clearance.
-    """
-
-    position: _Position
-    heat: Heat | None
-    full: Booleans
-    pads: Array | None = None
+_ROUGHLY = 1e-3
+"""Relative change of force and viscosity at which a film on a coarser mesh is known."""
+_COARSEST = (48, 8, 4)
+"""Cells around, along and across of the coarsest mesh on which a film is found first."""
 
 
 @dataclass(frozen=True)
@@ -102,13 +95,8 @@ class FilmSolution:
     @property
     def warm_start(self) -> WarmStart:
         """First guess for a neighbouring speed."""
-        relative = _relative(self.state)
-        return WarmStart(
-            position=_turned(_pair(relative), self.frame),
-            heat=self.thermal.heat if self.thermal is not None else None,
-            full=self.state.solution.full,
-            pads=relative[2:] if self.problem.bearing.pads else None,
-        )
+        heat = self.thermal.heat if self.thermal is not None else None
+        return WarmStart.of(self.state, heat, self.frame)
 
 
 @dataclass(frozen=True)
@@ -139,7 +127,15 @@ def solve_film(
     `walls` makes the walls of a heated film's problem; by default the steady ones.
     """
     if not _is_fed(case):
-        return _unsolved(case, speed, SolveStatus.STARVED, _starved(case.bearing))
+        return _unsolved(case, speed, SolveStatus.STARVED, starved(case.bearing))
+    if initial is None and walls is choose_walls:
+        initial = _on_coarser_mesh(case, speed)
+        if initial is not None:
+            with suppress(NoFilmError, SingularFilmError):
+                solution = solve_film(case, speed, initial=initial)
+                if solution.status is SolveStatus.CONVERGED:
+                    return solution
+            initial = None
     if case.bearing.is_plain and case.bearing.is_symmetric:
         return _solve_plain(case, speed, initial, walls)
     try:
@@ -155,6 +151,27 @@ def solve_film(
     if solution.status in lost:
         return _from_elsewhere(case, speed, solution, walls)
     return solution
+
+
+def _on_coarser_mesh(case: Case, speed: float) -> WarmStart | None:
+    """Return a heated film known roughly on a mesh half as fine; None where it is not found.
+
+    Isothermal films are found in a few steps anyway.
+    """
+    mesh = case.film.mesh
+    around, along = mesh.circumferential // 2, 2 * (mesh.axial // 4)
+    enough = around >= _COARSEST[0] and along >= _COARSEST[1]
+    if case.thermal.model is not ThermalModel.THD or not enough:
+        return None
+    across = max(mesh.cross_film // 2, _COARSEST[2])
+    coarser = MeshSize(around, along, across, max(mesh.bush_radial // 2, 2))
+    case = replace(case, film=replace(case.film, mesh=coarser))
+    solve = _solve_plain if case.bearing.is_plain and case.bearing.is_symmetric else _solve_general
+    with suppress(NoFilmError, SingularFilmError, InputError):
+        solution = solve(case, speed, None, choose_walls, _ROUGHLY)
+        if solution.status is SolveStatus.CONVERGED:
+            return solution.warm_start
+    return None
 
 
 def _is_fed(case: Case) -> bool:
@@ -187,11 +204,10 @@ def _from_elsewhere(case: Case, speed: float, failed: FilmSolution, walls: Walls
             return solution if solution.status is SolveStatus.CONVERGED else None
         return _solve_general(case, speed, solution.warm_start, walls)
 
-    def solved(position: _Position) -> FilmSolution | None:
+    def solved(position: Position) -> FilmSolution | None:
         relative = _times(position, 1.0 / case.bearing.radial_clearance)
-        warm = WarmStart(relative, None, failed.state.solution.full[:0])
         with suppress(NoFilmError, SingularFilmError):
-            return heated(_solve_general(isothermal, speed, warm, walls))
+            return heated(_solve_general(isothermal, speed, WarmStart(relative), walls))
         return None
 
     positions = first_positions(field)
@@ -202,78 +218,31 @@ def _from_elsewhere(case: Case, speed: float, failed: FilmSolution, walls: Walls
             return found
     place = crossing(field)
     if place is None:
-        return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=_nowhere(failed, case))
+        why = nowhere(case, float(np.hypot(*failed.state.force)))
+        return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=why)
     if found := solved(place.position):
         return found
     begins = case.bearing.is_plain and case.film.inception is Inception.MAX_FILM
     if place.off > _JUMP and begins:  # at an angle that follows the journal, not the mesh
-        message = _jump(case, place.position)
+        message = jump(case, place.position)
         return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=message)
     # Kinks stand closer than a step of Newton's method, or the mesh, which follows the position,
     # moves them: keep the mesh of that very position, and come nearer on it first.
     frame = _frame_angle(case.bearing, place.position)
-    local = _turned(place.position, -frame)
+    local = turned(place.position, -frame)
     problem = film_problem(isothermal, speed, case.bearing.turned(-frame), local)
     nearer = crossing(replace(field, mesh=(problem, frame)), place.position)
     if nearer is None or nearer.off > _JUMP:
-        message = _jump(case, (nearer or place).position)
+        message = jump(case, (nearer or place).position)
         return replace(failed, status=SolveStatus.NO_EQUILIBRIUM, message=message)
-    search, start = _search(case, problem, frame), np.array(_turned(nearer.position, -frame))
+    search, start = _search(case, problem, frame), np.array(turned(nearer.position, -frame))
     film = _iterate(problem, start, search, None, walls)
     found = heated(_conclude(film, frame, search, film.iterations))
-    return found or replace(failed, status=SolveStatus.NOT_CONVERGED, message=_NOT_FOUND)
-
-
-_NOT_FOUND = (
-    "some journal position should carry the load, but it was found on a coarse mesh only: the "
-    'force has a kink nearby, or the mesh is too coarse. Try inception = "free", a finer mesh, or '
-    "another load"
-)
-
-
-def _jump(case: Case, position: _Position) -> str:
-    """Describe where the force jumps across the load, and what to try."""
-    eps = math.hypot(*position) / case.bearing.radial_clearance
-    advice = "another load or a finer mesh"
-    if case.film.inception is Inception.MAX_FILM:
-        advice = f'inception = "free", {advice}'
-    return (
-        f"no journal position carries the load: near eccentricity ratio {eps:.3g} and attitude "
-        f"{math.degrees(math.atan2(position[1], position[0])):.3g} deg the film's force jumps past "
-        f"it, as a stretch of film forms or vanishes there. Try {advice}"
-    )
-
-
-def _nowhere(failed: FilmSolution, case: Case) -> str:
-    if isinstance(case.target, LoadTarget):
-        return _no_position(failed, case)
-    cause = "the film breaks off, or runs dry, at attitudes between. Give the load instead"
-    if any(groove.supply_pressure > 0.0 for groove in case.bearing.grooves):
-        cause = (
-            "the pressure of the supply outweighs what the motion makes. Give the load instead, a "
-            "lower supply pressure, or a higher speed"
-        )
-    return (
-        "at no attitude does the film carry a load along the load line at this eccentricity "
-        f"ratio: {cause}"
-    )
-
-
-def _no_position(failed: FilmSolution, case: Case) -> str:
-    """Describe why no position carries the load, and what to try."""
-    thinnest = CLEARANCE_KEPT * case.bearing.radial_clearance
-    carried = float(np.hypot(*failed.state.force))
-    return (
-        "no journal position within the clearance carries the load: wherever the journal goes, it "
-        f"comes within {thinnest * 1e6:.3g} µm of the bore before the film balances it (the film "
-        f"carries {carried:.4g} N at the last position tried). A heavier load needs more speed, "
-        "viscosity or size; a groove or a joint under the load line, misalignment, or film that is "
-        'kept from forming again (inception = "max_film") leaves less'
-    )
+    return found or replace(failed, status=SolveStatus.NOT_CONVERGED, message=NOT_FOUND)
 
 
 def _solve_plain(
-    case: Case, speed: float, initial: WarmStart | None, walls: WallsOf
+    case: Case, speed: float, initial: WarmStart | None, walls: WallsOf, roughly: float = 0.0
 ) -> FilmSolution:
     """Solve a plain, aligned film, with x along the line of centres."""
     cold, target = case.bearing.radial_clearance, case.target
@@ -283,7 +252,8 @@ def _solve_plain(
         clearance, held = problem.bearing.radial_clearance, None
         if problem.is_thermal and case.thermal.expansion is not None:
             held = FixedRatio(eps, clearance)
-        film = _iterate(problem, np.array([eps * clearance, 0.0]), held, initial, walls)
+        start = np.array([eps * clearance, 0.0])
+        film = _iterate(problem, start, held, initial, walls, roughly=roughly)
         return _conclude(film, _load_line(film.state), None, film.iterations)
     eps = math.hypot(*initial.position) if initial else 0.5
     warm, search, effort = initial, PlainSearch(target.load, cold), _Effort()
@@ -302,9 +272,10 @@ def _solve_plain(
             lambda state, level=level: effort.proceed(
                 _graded_eccentricity(float(_relative(state)[0])) == level
             ),
+            roughly,
         )  # fmt: skip
         eps = float(_relative(film.state)[0])
-        warm = WarmStart(_pair(_relative(film.state)), film.heat, film.state.solution.full)
+        warm = WarmStart.of(film.state, film.heat)
         if effort.ends(film, lost=search.unreachable):
             return _conclude(film, _load_line(film.state), search, effort.iterations)
 
@@ -347,7 +318,7 @@ def _cold_start(problem: FilmProblem, displacement: Array, search: _Search) -> W
     if cold.state.solution.converged and cold.residual < ROUGH_TOLERANCE:
         displacement = cold.state.displacement
     relative = displacement / problem.bearing.radial_clearance
-    return WarmStart(_pair(relative), None, cold.state.solution.full)
+    return replace(WarmStart.of(cold.state, None), position=_pair(relative))
 
 
 def _graded_eccentricity(eps: float) -> float:
@@ -364,7 +335,7 @@ def _load_line(state: FilmState) -> float:
 
 
 def _solve_general(
-    case: Case, speed: float, initial: WarmStart | None, walls: WallsOf
+    case: Case, speed: float, initial: WarmStart | None, walls: WallsOf, roughly: float = 0.0
 ) -> FilmSolution:
     """Solve any other film, in the load frame; a misaligned plain one along its line of centres.
 
@@ -374,38 +345,37 @@ def _solve_general(
     if initial is not None:
         position = initial.position
     warm, effort = initial, _Effort()
+
+    def own_mesh(bearing: Bearing, level: Position, state: FilmState) -> bool:
+        place = _times(_pair(_relative(state)), cold)
+        turn = _frame_angle(case.bearing, place)
+        own = _graded_position(bearing, place) == level
+        return effort.proceed(own and abs(turn) < 10.0 * _FRAME_TOLERANCE)
+
     while True:
         frame = _frame_angle(case.bearing, position)
         bearing = case.bearing.turned(-frame)
-        local = _turned(position, -frame)
+        local = turned(position, -frame)
         level = _graded_position(bearing, _times(local, cold))
         problem = film_problem(case, speed, bearing, level)
         search = _search(case, problem, frame)
         local = _inside(problem, search, _times(local, problem.bearing.radial_clearance))
         if problem.is_thermal and warm is None:
             warm = _cold_start(problem, np.array(local), search)
-            position = _turned(warm.position, frame)
+            position = turned(warm.position, frame)
             continue
-
-        def own_mesh(
-            state: FilmState, bearing: Bearing = bearing, level: _Position = level
-        ) -> bool:
-            place = _times(_pair(_relative(state)), cold)
-            turn = _frame_angle(case.bearing, place)
-            own = _graded_position(bearing, place) == level
-            return effort.proceed(own and abs(turn) < 10.0 * _FRAME_TOLERANCE)
-
-        film = _iterate(problem, np.array(local), search, warm, walls, own_mesh)
+        proceed = partial(own_mesh, bearing, level)
+        film = _iterate(problem, np.array(local), search, warm, walls, proceed, roughly)
         local = _pair(_relative(film.state))
-        position = _turned(local, frame)
-        warm = WarmStart(position, film.heat, film.state.solution.full)
+        position = turned(local, frame)
+        warm = WarmStart.of(film.state, film.heat, frame)
         turn = _frame_angle(case.bearing, local)
         moved = abs(turn) > _FRAME_TOLERANCE
         if effort.ends(film, moved=moved, lost=search is not None and search.unreachable):
             return _conclude(film, frame, search, effort.iterations)
 
 
-def _inside(problem: FilmProblem, search: _Search | None, position: _Position) -> _Position:
+def _inside(problem: FilmProblem, search: _Search | None, position: Position) -> Position:
     """Return a first position that leaves a film everywhere, nearer to the centre if need be."""
     for share in (1.0, 0.7, 0.4, 0.0):
         nearer = (share * position[0], share * position[1])
@@ -427,7 +397,7 @@ def _search(case: Case, problem: FilmProblem, frame: float) -> LoadSearch | Atti
     return LoadSearch(load, clearance, problem.geometry)
 
 
-def _first_position(case: Case) -> _Position:
+def _first_position(case: Case) -> Position:
     eps = 0.4
     if isinstance(case.target, EccentricityTarget):
         eps = case.target.eccentricity_ratio
@@ -437,12 +407,12 @@ def _first_position(case: Case) -> _Position:
     return eps * math.cos(0.8), eps * math.sin(0.8)
 
 
-def _frame_angle(bearing: Bearing, position: _Position) -> float:
+def _frame_angle(bearing: Bearing, position: Position) -> float:
     """Return the film frame's angle: that of the line of centres for a plain bearing, else 0."""
     return math.atan2(position[1], position[0]) if bearing.is_plain else 0.0
 
 
-def _graded_position(bearing: Bearing, position: _Position) -> _Position:
+def _graded_position(bearing: Bearing, position: Position) -> Position:
     """Round a position to a grid, as fine as the film is thin, for which meshes are graded."""
     thin = float(mid_thickness(bearing, np.linspace(0.0, 2.0 * math.pi, 361), position).min())
     relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
@@ -450,17 +420,12 @@ def _graded_position(bearing: Bearing, position: _Position) -> _Position:
     return round(position[0] / grid) * grid, round(position[1] / grid) * grid
 
 
-def _pair(displacement: Array) -> _Position:
+def _pair(displacement: Array) -> Position:
     return float(displacement[0]), float(displacement[1])
 
 
-def _times(position: _Position, factor: float) -> _Position:
+def _times(position: Position, factor: float) -> Position:
     return factor * position[0], factor * position[1]
-
-
-def _turned(position: _Position, angle: float) -> _Position:
-    cos, sin = math.cos(angle), math.sin(angle)
-    return position[0] * cos - position[1] * sin, position[0] * sin + position[1] * cos
 
 
 def _iterate(
@@ -470,21 +435,21 @@ def _iterate(
     initial: WarmStart | None,
     walls: WallsOf,
     proceed: Callable[[FilmState], bool] | None = None,
+    roughly: float = 0.0,
 ) -> _Iterate:
+    """Iterate on one mesh, to the tolerances or to `roughly` where that is larger."""
     if not problem.is_thermal:
-        return _iterate_isothermal(problem, displacement, search, initial, proceed)
-    shape = (*problem.mesh.shape, problem.settings.mesh.cross_film)
-    heat = initial.heat if initial else None
-    if heat is None or heat.temperature.shape != shape:
-        heat = uniform_heat(problem)
+        tolerance = max(_FORCE_TOLERANCE, roughly)
+        return _iterate_isothermal(problem, displacement, search, initial, proceed, tolerance)
     film = solve_thermal_film(
         problem,
         displacement,
-        initial=heat,
+        initial=initial.heat_on(problem) if initial else None,
         move=search,
         walls=walls(problem),
-        force_tolerance=10.0 * _FORCE_TOLERANCE,
+        force_tolerance=max(_THERMAL_FORCE_TOLERANCE, roughly),
         proceed=proceed,
+        tolerance=max(TOLERANCE, roughly),
     )
     return _Iterate(film.state, film, film.converged, film.iterations, film.residual)
 
@@ -495,10 +460,11 @@ def _iterate_isothermal(
     search: _Search | None,
     initial: WarmStart | None,
     proceed: Callable[[FilmState], bool] | None = None,
+    tolerance: float = _FORCE_TOLERANCE,
 ) -> _Iterate:
     """Iterate the position of a film of the supply temperature's viscosity."""
     layers = supply_layers(problem)
-    full = initial.full if initial and initial.full.shape == problem.mesh.shape else None
+    full = initial.full_on(problem) if initial else None
     off, step, stuck, backtracking = 0.0, 0, 0, Backtracking()
     while True:
         step += 1
@@ -512,28 +478,15 @@ def _iterate_isothermal(
             if not proceed(state):
                 return _Iterate(state, None, False, step, off)
             proceed = None
-        if off < _FORCE_TOLERANCE or stuck >= 4 or step == _MAX_POSITION_STEPS:
+        if off < tolerance or stuck >= 4 or step == _MAX_POSITION_STEPS:
             break
         if step >= _PATIENCE:
             following = backtracking(displacement, off, following)
         if following is None or np.array_equal(following, displacement):
             break
         displacement = following
-    done = off < _FORCE_TOLERANCE and state.solution.converged
+    done = off < tolerance and state.solution.converged
     return _Iterate(state, None, done, step, off)
-
-
-def _starved(bearing: Bearing) -> str:
-    """Describe that no film forms, and what to try."""
-    advice = "A mass-conserving film needs a supply: a groove"
-    if bearing.grooves:
-        advice = (
-            "The oil of the grooves does not fill the bearing anywhere behind them: move a groove "
-            "further ahead of the load line, or raise its supply pressure"
-        )
-    elif bearing.is_plain:
-        advice += ', or inception = "max_film"'
-    return f"no film forms: the pressure is nowhere above zero. {advice}"
 
 
 def _conclude(
@@ -549,7 +502,7 @@ def _conclude(
         pass  # no pressure, and yet a film
     elif not solution.pressure.max() > 0.0 or not solution.full.any():
         status = SolveStatus.STARVED
-        message = _starved(problem.bearing)
+        message = starved(problem.bearing)
     elif search is not None and search.unreachable and not film.converged:
         status = SolveStatus.NO_EQUILIBRIUM
         message = (
@@ -583,8 +536,4 @@ def _conclude(
     )
 
 
-__all__ = [
-    "FilmSolution",
-    "WarmStart",
-    "solve_film",
-]
+__all__ = ["FilmSolution", "solve_film"]

@@ -8,7 +8,7 @@ A film has converged when all of the following hold.
 
 =============  =====================================================================================
 force          the search's relative residual is below `force_tolerance`
-temperature    in one iteration no log viscosity changes by `_TOLERANCE`, no temperature by 1e-4 of
+temperature    in one iteration no log viscosity changes by `TOLERANCE`, no temperature by 1e-4 of
                the field's spread, and no wall's heat by 1e-3 of the dissipation
 heat balance   it closes within `BALANCE_TOLERANCE` of the dissipation
 rupture        few cells break the rupture condition (`_VIOLATIONS_ALLOWED`)
@@ -43,7 +43,7 @@ from .layers import layer_integrals
 from .problem import FilmProblem, FilmState, film_state
 from .walls import FilmContact, Walls, choose_walls
 
-_TOLERANCE = 1e-5
+TOLERANCE = 1e-5
 """Largest change of log viscosity in one iteration at which the film counts as converged."""
 _SPREAD_WEIGHT = 0.1
 """Weight of a temperature change relative to the field's spread, as one of log viscosity."""
@@ -70,7 +70,7 @@ _UNREACHABLE_STEPS = 8
 """Iterations that the search may lie at the end of its range before it is given up."""
 _BEYOND_LIMITS_STEPS = 25
 """Iterations in a row that may lead beyond the temperature limits before the film is given up."""
-_LOSS_EVERY = 3
+_LOSS_EVERY = 6
 """Iterations from one estimate of the film's loss of heat to the next."""
 _POSITION_WEIGHT = 30.0
 """[K]; a clearance's change of position counts like this change of the whole temperature field."""
@@ -143,7 +143,7 @@ def solve_thermal_film(
     full: Booleans | None = None,
     proceed: Callable[[FilmState], bool] | None = None,
     force_tolerance: float = 1e-7,
-    tolerance: float = _TOLERANCE,
+    tolerance: float = TOLERANCE,
     max_iterations: int = _MAX_ITERATIONS,
 ) -> ThermalFilm:
     """Iterate to the fixed point.
