@@ -5,6 +5,7 @@ from __future__ import annotations
 import control
 import numpy as np
 import pytest
+from machine_texts import AT_9000_RPM, OVERHUNG, SPRINGS, UNSTABLE, WHEEL, flexible_rotor
 from scipy.integrate import solve_ivp
 
 from rotorsim.errors import InputError
@@ -15,38 +16,7 @@ from rotorsim.machine.reduction import response as frequency_response
 from rotorsim.study.machine_analysis import analyse_machine
 from rotorsim.study.machine_control import study_machine_control
 
-TEXT = """
-title = "flexible rotor"
-[rotor]
-kind = "beam"
-internal_damping = "2e-5 s"
-[[rotor.section]]
-length = "1.2 m"
-outer_diameter = "60 mm"
-[[rotor.disc]]
-name = "wheel"
-at = "0.5 m"
-mass = "40 kg"
-polar_inertia = "0.4 kg*m^2"
-transverse_inertia = "0.25 kg*m^2"
-[[rotor.disc]]
-name = "overhung"
-at = "1.2 m"
-mass = "10 kg"
-polar_inertia = "0.1 kg*m^2"
-transverse_inertia = "0.06 kg*m^2"
-[[support]]
-at = "0 mm"
-stiffness = ["20 MN/m", "15 MN/m"]
-damping = "2 kN*s/m"
-[[support]]
-at = "1 m"
-stiffness = "20 MN/m"
-damping = "2 kN*s/m"
-[operating]
-speed = "9000 rpm"
-[control]
-"""
+TEXT = flexible_rotor(UNSTABLE, discs=WHEEL + OVERHUNG) + SPRINGS + AT_9000_RPM + "[control]\n"
 
 
 def study(lines, **options):

@@ -4,40 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from machine_texts import AT_9000_RPM, SPRINGS, flexible_rotor
 
 import rotorsim as rs
 from rotorsim.errors import InputError
 from rotorsim.files.machine import MachineFile
 from rotorsim.study.machines import assembled
 
-TEXT = """
-title = "flexible rotor"
-[rotor]
-kind = "beam"
-[[rotor.section]]
-length = "1.2 m"
-outer_diameter = "60 mm"
-[[rotor.disc]]
-name = "wheel"
-at = "0.5 m"
-mass = "40 kg"
-polar_inertia = "0.4 kg*m^2"
-transverse_inertia = "0.25 kg*m^2"
+UNBALANCE = """
 [[rotor.unbalance]]
 at = "0.5 m"
 amount = "400 g*mm"
 phase = "30 deg"
-[[support]]
-at = "0 mm"
-stiffness = ["20 MN/m", "15 MN/m"]
-damping = "2 kN*s/m"
-[[support]]
-at = "1 m"
-stiffness = "20 MN/m"
-damping = "2 kN*s/m"
-[operating]
-speed = "9000 rpm"
 """
+TEXT = flexible_rotor() + UNBALANCE + SPRINGS + AT_9000_RPM
 SPEED = 9000.0 * np.pi / 30.0
 
 

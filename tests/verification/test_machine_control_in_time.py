@@ -6,6 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from machine_texts import (
+    AT_9000_RPM,
+    BEARING,
+    FILMS,
+    OVERHUNG,
+    SPRINGS,
+    UNSTABLE,
+    WHEEL,
+    flexible_rotor,
+)
 from scipy.integrate import solve_ivp
 
 import rotorsim as rs
@@ -18,37 +28,7 @@ from rotorsim.study.machines import assembled
 from rotorsim.study.motion_results import motion_document
 
 SPEED = 9000.0 * np.pi / 30.0
-TEXT = """
-title = "overhung rotor that internal damping makes unstable"
-[rotor]
-kind = "beam"
-internal_damping = "2e-5 s"
-[[rotor.section]]
-elements = {elements}
-length = "1.2 m"
-outer_diameter = "60 mm"
-[[rotor.disc]]
-name = "wheel"
-at = "0.5 m"
-mass = "40 kg"
-polar_inertia = "0.4 kg*m^2"
-transverse_inertia = "0.25 kg*m^2"
-[[rotor.disc]]
-name = "overhung"
-at = "1.2 m"
-mass = "10 kg"
-polar_inertia = "0.1 kg*m^2"
-transverse_inertia = "0.06 kg*m^2"
-[[support]]
-at = "0 mm"
-stiffness = ["20 MN/m", "15 MN/m"]
-damping = "2 kN*s/m"
-[[support]]
-at = "1 m"
-stiffness = "20 MN/m"
-damping = "2 kN*s/m"
-[operating]
-speed = "9000 rpm"
+CONTROL = """
 [control]
 actuator = ["250 mm"]
 sensor = ["overhung"]
@@ -64,8 +44,12 @@ initial_displacement = ["5 um", "0 um"]
 """
 
 
+def rotor(elements: int) -> str:
+    return flexible_rotor(UNSTABLE, elements, WHEEL + OVERHUNG)
+
+
 def machine(more: str = "", orbit: str = ORBIT, elements: int = 6) -> MachineFile:
-    return MachineFile.from_text(TEXT.format(elements=elements) + more + orbit)
+    return MachineFile.from_text(rotor(elements) + SPRINGS + AT_9000_RPM + CONTROL + more + orbit)
 
 
 def whole(found: MachineFile):
@@ -140,17 +124,7 @@ def test_saturation_against_an_independent_integration():
     np.testing.assert_allclose(free.boundary[:-1].mean(axis=0), 0.0, atol=1e-12)
 
 
-FILMS = (
-    TEXT[: TEXT.index("[[support]]")].format(elements=8)
-    + """
-[[support]]
-name = "left"
-at = "0 mm"
-bearing = "left.toml"
-[[support]]
-name = "right"
-at = "1 m"
-bearing = "left.toml"
+ON_FILMS = """
 [operating]
 speed = { start = "3000 rpm", stop = "9000 rpm", count = 4 }
 [control]
@@ -161,39 +135,23 @@ sample_time = "100 us"
 delay = "50 us"
 speed = "9000 rpm"
 """
-)
-BEARING = """
-[bearing]
-journal_radius = "30 mm"
-length = "30 mm"
-radial_clearance = "60 um"
-[lubricant]
-viscosity = "0.02 Pa*s"
-density = "860 kg/m^3"
-specific_heat = "2000 J/(kg*delta_degC)"
-thermal_conductivity = "0.13 W/(m*delta_degC)"
-[film]
-cavitation = "half_sommerfeld"
-inception = "free"
-mesh = { circumferential = 64, axial = 16, cross_film = 8 }
-[thermal]
-models = "isothermal"
-[operating]
-speed = "9000 rpm"
-load = "300 N"
-"""
 
 
 @pytest.mark.slow
 def test_a_controller_holds_a_rotor_on_nonlinear_films_and_loses_it_with_less_force(tmp_path):
-    (tmp_path / "left.toml").write_text(BEARING)
+    (tmp_path / "bearing.toml").write_text(BEARING.format(circumferential=64, axial=16))
     path = tmp_path / "rotor.toml"
 
     def run(control: str, limit: str = "", push: str = "2 um", revolutions: int = 60):
-        path.write_text(
-            FILMS + limit + f'[orbit]\ncontrol = {control}\nforce = "mapped"\nspeed = "9000 rpm"\n'
-            f'revolutions = {revolutions}\ninitial_displacement = ["{push}", "0 um"]\n'
-        )
+        orbit = f'''
+[orbit]
+control = {control}
+force = "mapped"
+speed = "9000 rpm"
+revolutions = {revolutions}
+initial_displacement = ["{push}", "0 um"]
+'''
+        path.write_text(rotor(8) + FILMS + ON_FILMS + limit + orbit)
         return rs.simulate(rs.load_machine(path))
 
     def size(motion) -> np.ndarray:
@@ -216,7 +174,7 @@ def test_what_cannot_be_is_refused_with_its_key():
 
     without = machine()
     with pytest.raises(InputError) as caught:
-        MachineFile.from_text(TEXT.format(elements=6).split("[control]")[0] + ORBIT)
+        MachineFile.from_text(rotor(6) + SPRINGS + AT_9000_RPM + ORBIT)
     assert caught.value.key == "control"
     assert key(without, controller="pd")[0] == "controller"
     other = replace(designed_feedback(without, SPEED), sensors=("no_such_displacement_x",) * 2)
