@@ -17,12 +17,10 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from ..arrays import Array, ComplexArray
-from ..errors import InputError
 from ..machine.control import signal_name
 from ..machine.output_feedback import OutputFeedback, unknown_signal
 from ..machine.reduction import probing_frequencies, response
 from .orbit import OrbitEvent, OrbitStatus
-from .problem import SpeedSchedule
 from .system import Limited
 
 if TYPE_CHECKING:
@@ -51,6 +49,10 @@ class Loop:
         """Return what the sensors read (..., p), from (..., n) displacements and rates."""
         both = np.concatenate([q[..., : self.size], v[..., : self.size]], axis=-1)
         return both @ self.rows.T - self.offset
+
+    def sampler(self) -> Sampler | None:
+        """Return what measures and acts at the controller's samples; None: it is continuous."""
+        return Sampler(self) if self.feedback.sample_time else None
 
     def forces(self, q: Array, v: Array) -> Array:
         """Return the actuators' forces (..., m) along a motion [N]."""
@@ -137,12 +139,10 @@ def with_controller(
 
     rest : (n,) array. Displacements at which the sensors read 0, so that no static load is carried.
     names : Node and unknown of each displacement of the whole machine, which signals are named by.
-    Raises InputError: A signal is not there, or a torque drives what a sampled controller holds.
+    Raises InputError: A signal is not there.
     """
     system, n = problem.system, problem.system.size
     dt, signals = feedback.sample_time, signals_of(feedback, names)
-    if dt and not isinstance(problem.drive, SpeedSchedule):
-        raise InputError("needs a prescribed speed, no torque", key="controller.sample_time")
     acting = system.basis[list(signals.driven)].T
     rows = signals.rows(system.basis)
     loop = Loop(feedback, rows, rows[:, :n] @ rest, n, signals.driven)
@@ -221,41 +221,26 @@ def _words(feedback: OutputFeedback) -> str:
     return " ".join(said)
 
 
-class Sampled:
-    """An integrator that stops where a controller measures and where its forces change."""
+class Sampler:
+    """A sampled controller in a run: its states, and the forces that wait to act."""
 
-    def __init__(self, advance: Advance, loop: Loop) -> None:
-        self.advance: Advance = advance
+    def __init__(self, loop: Loop) -> None:
         self.loop: Loop = loop
         self.state: Array = np.zeros(len(loop.feedback.a))
         self.count: int = 0
         self.waiting: deque[tuple[float, Array]] = deque()
 
-    def __call__(self, q: Array, v: Array, t: float, stop: float, times: Array) -> Answer:
-        """Integrate from t to `stop`; see `rotorsim.orbit.motion`."""
-        done, found = 0, []
-        slack = 1e-9 * self.loop.feedback.sample_time
-        while True:
-            v = self._act(t + slack, q, v)
-            end = min(stop, self._due())
-            # what lies on a sample by rounding sees the forces after it
-            upto = len(times) if end == stop else int(np.searchsorted(times, end - slack))
-            wanted = np.maximum(times[done:upto], t)
-            (qs, vs), status, message, q, v, *events = self.advance(q, v, t, end, wanted)
-            found.append((qs, vs))
-            done, t = upto, end
-            if status is not OrbitStatus.COMPLETED or end == stop:
-                qs, vs = (np.concatenate(column) for column in zip(*found, strict=True))
-                return (qs, vs), status, message, q, v, *events
-
-    def _due(self) -> float:
+    @property
+    def due(self) -> float:
+        """When it measures or its forces change next [s]."""
         sample = self.count * self.loop.feedback.sample_time
         return min(sample, self.waiting[0][0]) if self.waiting else sample
 
-    def _act(self, now: float, q: Array, v: Array) -> Array:
-        """Measure and set the forces, whatever is due until now."""
+    def act(self, now: float, q: Array, v: Array) -> Array:
+        """Measure and set the forces, whatever is due until now; return the rates with them."""
         feedback, v = self.loop.feedback, v.copy()
-        while self._due() <= now:
+        now += self.slack
+        while self.due <= now:
             sample = self.count * feedback.sample_time
             if self.waiting and self.waiting[0][0] <= min(sample, now):
                 v[self.loop.size :] = self.waiting.popleft()[1]
@@ -264,3 +249,28 @@ class Sampled:
             self.waiting.append((sample + feedback.delay, force))
             self.count += 1
         return v
+
+    @property
+    def slack(self) -> float:
+        """Rounding of times [s]."""
+        return 1e-9 * self.loop.feedback.sample_time
+
+    def stopping(self, advance: Advance) -> Advance:
+        """Return an integrator that stops where the controller measures and its forces change."""
+
+        def integrate(q: Array, v: Array, t: float, stop: float, times: Array) -> Answer:
+            done, found = 0, []
+            while True:
+                v = self.act(t, q, v)
+                end = min(stop, self.due)
+                # what lies on a sample by rounding sees the forces after it
+                upto = len(times) if end == stop else int(np.searchsorted(times, end - self.slack))
+                wanted = np.maximum(times[done:upto], t)
+                (qs, vs), status, message, q, v, *events = advance(q, v, t, end, wanted)
+                found.append((qs, vs))
+                done, t = upto, end
+                if status is not OrbitStatus.COMPLETED or end == stop:
+                    qs, vs = (np.concatenate(column) for column in zip(*found, strict=True))
+                    return (qs, vs), status, message, q, v, *events
+
+        return integrate

@@ -16,7 +16,7 @@ import numpy as np
 from ..arrays import Array, Indices
 from ..errors import InputError
 from ..threads import on_one_blas_thread
-from .controlled import Advance, Answer, Loop, Sampled
+from .controlled import Advance, Answer, Loop
 from .kernels import shaft
 from .march import DONE, TOUCHED, march, repeat
 from .orbit import Orbit, OrbitEvent, OrbitStatus
@@ -31,6 +31,8 @@ _SOLVED_TOLERANCE, _SOLVED_TOLERANCE_SCIPY = 1e-3, 1e-4
 from full to ruptured one by one, which no step sees to more digits; the compiled method's own
 error is a tenth of its estimate."""
 _STATIC_STEPS = 200
+_FILM_ERRORS = (ArithmeticError, ValueError, np.linalg.LinAlgError)
+"""Of a film that cannot be solved at a step."""
 
 
 @dataclass(frozen=True)
@@ -421,15 +423,15 @@ def pieces_of(problem: MotionProblem, revolutions: int = CHUNK_REVOLUTIONS) -> I
     edges = _edges(problem, schedule, revolutions)
     count = math.floor(schedule.revolutions * samples + 1e-9) + 1
     q, v, done = problem.start, problem.velocity, 0
-    sampled = problem.loop is not None and problem.loop.feedback.sample_time > 0.0
-    if problem.system.linear and schedule.is_constant and not sampled:
+    law = None if problem.loop is None else problem.loop.sampler()
+    if problem.system.linear and schedule.is_constant and law is None:
         advance: Advance = _Exact(problem, schedule)
     elif problem.system.compilable:
         advance = _Rosenbrock(problem, schedule)
     else:
         advance = _Scipy(problem, schedule)
-    if problem.loop is not None and sampled:
-        advance = Sampled(advance, problem.loop)
+    if law is not None:
+        advance = law.stopping(advance)
     for start, stop in itertools.pairwise(edges):
         last = stop == edges[-1]
         turned = float(schedule.angle_at(stop)) / (2.0 * np.pi) * samples
@@ -451,14 +453,18 @@ def pieces_of(problem: MotionProblem, revolutions: int = CHUNK_REVOLUTIONS) -> I
 def _edges(problem: MotionProblem, schedule: SpeedSchedule, revolutions: int) -> list[float]:
     """Return where pieces end [s]: after some revolutions, and at corners of speed and loads."""
     turns = np.arange(0.0, schedule.revolutions, max(revolutions, 1))
+    edges = {*schedule.time_at(2.0 * np.pi * turns).tolist(), *schedule.times}
+    return _with_corners(problem, edges, schedule.duration)
+
+
+def _with_corners(problem: MotionProblem, edges: Iterable[float], duration: float) -> list[float]:
+    """Return edges [s] with the times at which unbalance and loads begin and end, to the last."""
     corners = {start for start, _ in problem.system.unbalance}
     corners |= {time for load in problem.system.loads for time in (load.start, load.stop)}
-    edges = {float(t) for t in schedule.time_at(2.0 * np.pi * turns)} | set(schedule.times)
-    edges |= {t for t in corners if 0.0 < t < schedule.duration}
-    ordered, least = sorted(edges), 1e-9 * schedule.duration
+    ordered = sorted({*edges, duration, *(t for t in corners if 0.0 < t < duration)})
     kept = [ordered[0]]
-    kept += [t for t in ordered[1:] if t - kept[-1] > least]
-    kept[-1] = schedule.duration
+    kept += [t for t in ordered[1:] if t - kept[-1] > 1e-9 * duration]
+    kept[-1] = duration
     return kept
 
 
@@ -659,7 +665,11 @@ class _Scipy:
         found[n:, n:] = -self.inverse @ (damping + more_damping)
         return found
 
-    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> Answer:
+    def solved(self, state: Array, start: float, stop: float, times: Array | None = None) -> Any:
+        """Return SciPy's solution at times, or at any time (`sol`), up to where a film ends.
+
+        Raises ArithmeticError, ValueError, LinAlgError: As the solution of a film.
+        """
         from scipy.integrate import solve_ivp
 
         problem, n = self.problem, self.size
@@ -668,66 +678,92 @@ class _Scipy:
             return min(float(problem.film_left(s[None, :n])[0]), 1.0)
 
         gap.terminal = True  # pyright: ignore[reportFunctionMemberAccess]
-        ends = times if times.size and times[-1] >= stop else np.append(times, stop)
-        empty = np.zeros((0, n))
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            try:
-                found = solve_ivp(
-                    self.rates, (start, stop), np.concatenate([q, v]), method="LSODA", t_eval=ends,
-                    events=gap, rtol=problem.relative_tolerance, atol=self.tolerance,
-                    jac=self.jacobian,
-                )  # fmt: skip
-            except (ArithmeticError, ValueError, np.linalg.LinAlgError) as error:
-                return (empty, empty), OrbitStatus.INTEGRATION_FAILED, str(error), q, v
-        y = found.y.T if len(found.t) else np.zeros((0, 2 * n))
-        count = min(times.size, len(y))
-        status, message = OrbitStatus.COMPLETED, ""
+            return solve_ivp(
+                self.rates, (start, stop), state, method="LSODA", t_eval=times,
+                dense_output=times is None, events=gap, rtol=problem.relative_tolerance,
+                atol=self.tolerance, jac=None if self.schedule is None else self.jacobian,
+            )  # fmt: skip
+
+    def ended(self, found: Any) -> tuple[OrbitStatus, str, *tuple[OrbitEvent, ...]]:
+        """Return how a solution ended, with the event where a film did."""
         if found.status == 1:
             end = found.y_events[0][0]
-            message, event = _touched(problem, float(found.t_events[0][0]), end[:n])
-            both = y[:count, :n], y[:count, n:]
-            return both, OrbitStatus.TOUCH_DOWN, message, *_halves(end, n), event
+            when = float(found.t_events[0][0])
+            return OrbitStatus.TOUCH_DOWN, *_touched(self.problem, when, end[: self.size])
         if found.status < 0:
-            status, message = OrbitStatus.INTEGRATION_FAILED, str(found.message)
+            return OrbitStatus.INTEGRATION_FAILED, str(found.message)
+        return OrbitStatus.COMPLETED, ""
+
+    def __call__(self, q: Array, v: Array, start: float, stop: float, times: Array) -> Answer:
+        n = self.size
+        ends = times if times.size and times[-1] >= stop else np.append(times, stop)
+        try:
+            found = self.solved(np.concatenate([q, v]), start, stop, ends)
+        except _FILM_ERRORS as error:
+            empty = np.zeros((0, n))
+            return (empty, empty), OrbitStatus.INTEGRATION_FAILED, str(error), q, v
+        y = found.y.T if len(found.t) else np.zeros((0, 2 * n))
+        count = min(times.size, len(y))
+        status, message, *events = self.ended(found)
         end = y[-1] if len(y) else np.concatenate([q, v])
-        return (y[:count, :n], y[:count, n:]), status, message, *_halves(end, n)
+        if events:
+            end = found.y_events[0][0]
+        both = y[:count, :n], y[:count, n:]
+        return both, status, message, *_halves(end, n), *events
 
 
 def _driven(problem: MotionProblem, drive: TorqueDrive) -> Iterator[Motion]:
     """Return the pieces of a run whose speed follows from a torque."""
-    from scipy.integrate import solve_ivp
-
     solver, n = _Scipy(problem, None), problem.system.size
-    corners = sorted({t for t, _ in problem.system.unbalance if 0.0 < t < drive.duration})
     span = 2.0 * np.pi * CHUNK_REVOLUTIONS / max(max(drive.speeds), 1e-9)
-    edges = sorted({*np.arange(0.0, drive.duration, span).tolist(), drive.duration, *corners})
+    edges = _with_corners(problem, np.arange(0.0, drive.duration, span).tolist(), drive.duration)
     state = np.concatenate([problem.start, problem.velocity, [0.0, drive.start]])
-    done, per_turn = 0, problem.samples_per_revolution
+    law = None if problem.loop is None else problem.loop.sampler()
+    done = 0
     for start, stop in itertools.pairwise(edges):
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")
-            found = solve_ivp(
-                solver.rates, (start, stop), state, method="LSODA", dense_output=True,
-                rtol=problem.relative_tolerance, atol=solver.tolerance,
-            )  # fmt: skip
-        last = found.status < 0 or stop == edges[-1]
-        turned = np.maximum.accumulate(found.y[2 * n])
-        upto = math.floor(turned[-1] / (2.0 * np.pi) * per_turn + 1e-9) + 1
-        angles = 2.0 * np.pi * np.arange(done, max(upto, done)) / per_turn
-        times = np.interp(angles, turned, found.t)
-        for _ in range(3):
-            if times.size:
-                at = found.sol(times)
-                times = times + (angles - at[2 * n]) / np.maximum(at[2 * n + 1], 1e-9)
-                times = np.clip(times, start, stop)
-        y = found.sol(times).T if times.size else np.zeros((0, 2 * n + 2))
-        done += times.size
-        status = OrbitStatus.RUNNING
-        if last:
-            status = OrbitStatus.COMPLETED if found.status >= 0 else OrbitStatus.INTEGRATION_FAILED
-        yield Motion(times, y[:, 2 * n + 1], angles, y[:, :n], y[:, n : 2 * n], problem, status,
-                     "" if found.status >= 0 else str(found.message))  # fmt: skip
+        rows, t = [(np.zeros(0), np.zeros((0, state.size)))], start
+        while True:
+            end = stop
+            if law is not None:
+                state[n : 2 * n] = law.act(t, state[:n], state[n : 2 * n])
+                end = min(stop, law.due)
+            try:
+                found = solver.solved(state, t, end)
+            except _FILM_ERRORS as error:
+                status, message, events = OrbitStatus.INTEGRATION_FAILED, str(error), []
+                break
+            rows.append(_at_equal_angles(found, done, problem.samples_per_revolution))
+            done += rows[-1][0].size
+            t, state = end, found.y[:, -1]
+            status, message, *events = solver.ended(found)
+            if status is not OrbitStatus.COMPLETED or t == stop:
+                break
+        last = status is not OrbitStatus.COMPLETED or stop == edges[-1]
+        times, y = (np.concatenate(column) for column in zip(*rows, strict=True))
+        angles = 2.0 * np.pi * np.arange(done - times.size, done) / problem.samples_per_revolution
+        yield Motion(
+            times, y[:, 2 * n + 1], angles, y[:, :n], y[:, n : 2 * n], problem,
+            status if last else OrbitStatus.RUNNING, message, tuple(events),
+        )  # fmt: skip
         if last:
             return
-        state = found.y[:, -1]
+
+
+def _at_equal_angles(found: Any, done: int, per_turn: int) -> tuple[Array, Array]:
+    """Return times (m,) and states (m, n) at the samples of a turn from number `done` on.
+
+    found : Of SciPy; its last two states are the shaft's angle and speed.
+    """
+    turned = np.maximum.accumulate(found.y[-2])
+    upto = math.floor(turned[-1] / (2.0 * np.pi) * per_turn + 1e-9) + 1
+    angles = 2.0 * np.pi * np.arange(done, max(upto, done)) / per_turn
+    if not angles.size:
+        return angles, np.zeros((0, len(found.y)))
+    times = np.interp(angles, turned, found.t)
+    for _ in range(3):
+        at = found.sol(times)
+        times = times + (angles - at[-2]) / np.maximum(at[-1], 1e-9)
+        times = np.clip(times, found.t[0], found.t[-1])
+    return times, found.sol(times).T

@@ -105,7 +105,7 @@ def motion_problem(
     try:
         builder = _Builder(machine, settings, result)
         if controller is None and settings.control:
-            controller = designed_feedback(machine, builder.drive.speeds[0])
+            controller = designed_feedback(machine, builder.first)
         elif controller is not None and not isinstance(controller, OutputFeedback):
             controller = OutputFeedback.of(controller)
         builder.controller = controller

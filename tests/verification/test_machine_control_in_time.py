@@ -138,6 +138,36 @@ speed = "9000 rpm"
 
 
 @pytest.mark.slow
+def test_a_sampled_controller_of_a_shaft_that_a_torque_drives():
+    """With an inertia that the motion cannot slow down it is that of the prescribed speed."""
+    sampled = 'speed = "9000 rpm"\nsample_time = "100 us"\ndelay = "60 us"\nmax_force = "40 N"\n'
+    orbit = ORBIT.replace("revolutions = 40\n", "").replace("unbalance = false\n", "")
+    ramp = 'speed = { start = "9000 rpm", stop = "10000 rpm", duration = "50 ms" }\n'
+    rate = 1000.0 * np.pi / 30.0 / 0.05
+    torque = (
+        'drive = { start = "9000 rpm", duration = "50 ms", inertia = "1e6 kg*m^2", '
+        f'torque = "{rate * 1e6} N*m" }}\n'
+    )
+    unbalance = '[[rotor.unbalance]]\nat = "0.5 m"\namount = "40 g*mm"\n[control]'
+    made = []
+    for drive in (ramp, torque):
+        text = rotor(6) + SPRINGS + AT_9000_RPM + CONTROL + sampled + orbit + drive
+        found = MachineFile.from_text(text.replace("[control]", unbalance))
+        made.append(rs.simulate(found))
+    prescribed, driven = made
+    count = driven.t.size
+    assert abs(count - prescribed.t.size) <= 1
+    np.testing.assert_allclose(driven.t, prescribed.t[:count], rtol=1e-8, atol=1e-12)
+    scale = np.abs(at_the_sensor(prescribed)).max()
+    apart = np.abs(at_the_sensor(driven) - at_the_sensor(prescribed)[:count])
+    assert apart.max() < 5e-4 * scale
+    force, other = (motion_document(motion)["actuators"][0] for motion in made)
+    assert [force["largest_force"], other["largest_force"]] == pytest.approx([40.0, 40.0])
+    assert 0.05 < force["saturated"] < 0.95
+    assert force["saturated"] == pytest.approx(other["saturated"], abs=0.01)
+
+
+@pytest.mark.slow
 def test_a_controller_holds_a_rotor_on_nonlinear_films_and_loses_it_with_less_force(tmp_path):
     (tmp_path / "bearing.toml").write_text(BEARING.format(circumferential=64, axial=16))
     path = tmp_path / "rotor.toml"
@@ -193,7 +223,3 @@ def test_what_cannot_be_is_refused_with_its_key():
     )
     with pytest.raises(InputError, match="above 0"):
         machine('sample_time = "0 us"\n')
-    driven = ORBIT.replace("revolutions = 40", "").replace(
-        "initial", 'drive = { start = "9000 rpm", duration = "0.1 s", torque = "1 N*m" }\ninitial'
-    )
-    assert key(machine('sample_time = "100 us"\n', driven))[0] == "controller.sample_time"

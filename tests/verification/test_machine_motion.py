@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from machine_motions import FILMS, SPRINGS, two_discs
+from machine_motions import FILMS, PLAIN, SPRINGS, two_discs
 
 import rotorsim as rs
 from rotorsim.errors import InputError
@@ -236,6 +236,24 @@ def test_a_torque_drives_the_shaft_and_its_unbalance(tmp_path) -> None:
     # what the torque and the weight give is in the motion: kinetic energy with the unbalance
     steps = np.diff(motion.angle)
     assert steps == pytest.approx(np.full(steps.size, 2.0 * math.pi / 64), rel=1e-9)
+
+
+def test_a_torque_drives_the_shaft_until_the_surfaces_touch(tmp_path) -> None:
+    machine = two_discs(
+        FILMS,
+        '[orbit]\nforce = "short"\n'
+        'drive = { start = "6000 rpm", torque = "200 N*m", duration = "0.3 s" }',
+        unbalance="1000 g*mm",
+        folder=tmp_path,
+        bearing=PLAIN.replace("[lubricant]", 'roughness = "25 um"\n[lubricant]'),
+    )
+    motion = simulate(machine)
+    assert motion.status is OrbitStatus.TOUCH_DOWN
+    (touch,) = motion.events
+    assert motion.t[-1] <= touch.time < 0.29
+    assert math.hypot(touch.x, touch.y) == pytest.approx(25e-6, rel=1e-6)
+    least = min(motion.orbit(name).min_film.min() for name in "AB")
+    assert 25e-6 <= least < 26e-6
 
 
 def test_blade_loss_is_the_unbalance_response_after_a_while() -> None:
