@@ -38,7 +38,7 @@ def refuse_no_machine(value: object) -> None:
         raise InputError(
             "must be a MachineFile: rotorsim.load_machine(file) reads it",
             key="machine",
-            value=type(value).__name__,
+            value=value if isinstance(value, str) else type(value).__name__,
         )
 
 

@@ -30,7 +30,6 @@ def limit_cycles(
     Raises InputError: The static position is stable at all the machine's speeds, or a film has no
         closed form.
     """
-    refuse_no_machine(machine)
     problem, speeds = _at_lowest_speed(machine, orbit)
     return follow_limit_cycle(problem.system, problem.equilibrium, speeds, points=points)
 
@@ -68,7 +67,6 @@ def forced_response(
     that has become periodic (`rs.simulate`), begins a branch elsewhere than at small motions: of
     a whirl that is locked to a fraction of the speed, say.
     """
-    refuse_no_machine(machine)
     problem, speeds = _at_lowest_speed(machine, orbit)
     system, rest = problem.system, problem.equilibrium
     if start is not None:
@@ -79,6 +77,7 @@ def forced_response(
 def _at_lowest_speed(
     machine: MachineFile, orbit: MachineOrbit | None
 ) -> tuple[MotionProblem, tuple[float, float]]:
+    refuse_no_machine(machine)
     speeds = machine.operating.speeds
     settings = orbit or machine.orbit or MachineOrbit(force=MachineForce.SHORT)
     # as fine as the highest speed needs, at rest where the lowest lets it

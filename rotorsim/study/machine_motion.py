@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..arguments import refuse_no_machine
 from ..arrays import Array, ComplexArray, Indices
 from ..errors import InputError
 from ..files.machine import MachineFile
@@ -91,11 +92,7 @@ def motion_problem(
     controller: Any = None,
 ) -> MotionProblem:  # fmt: skip
     """Put a machine's motion together; see `simulate`."""
-    if not isinstance(machine, MachineFile):
-        raise InputError(
-            "must be a machine: rotorsim.load_machine(file) reads one", key="machine",
-            value=machine if isinstance(machine, str) else type(machine).__name__,
-        )  # fmt: skip
+    refuse_no_machine(machine)
     settings = orbit or machine.orbit
     if settings is None:
         raise InputError(

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arguments import refuse_no_machine
 from ..arrays import Array
 from ..errors import InputError
 from ..files.machine import MachineFile
@@ -47,11 +48,7 @@ def assembled(machine: MachineFile | Machine, thermal_model: str | None = None) 
     """
     if isinstance(machine, Machine):
         return machine
-    if not isinstance(machine, MachineFile):
-        raise InputError(
-            "must be a machine: rotorsim.load_machine(file) reads one", key="machine",
-            value=machine if isinstance(machine, str) else type(machine).__name__,
-        )  # fmt: skip
+    refuse_no_machine(machine)
     results = machine_results(machine)
     name = next(reversed(results)) if thermal_model is None else thermal_model
     if name not in results:
