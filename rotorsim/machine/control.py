@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import finite_number
+from ..arguments import finite_number, refuse_other
 from ..arrays import Array, ComplexArray
 from ..bearing.interpolation import Coefficients
 from ..errors import InputError
@@ -21,8 +21,6 @@ from .support import ConstantSupport
 
 if TYPE_CHECKING:
     import control
-
-    from ..bearing.interpolation import Coefficients
 
 
 _NO_GAIN = 1e9
@@ -390,12 +388,13 @@ def state_space(
     Raises
     ------
     InputError
-        The mass or the speed is missing or no number, massless nodes are not damped, there is no
-        such disturbance, or the rotor has no unbalance.
+        The plant is none of these, the mass or the speed is missing or no number, massless nodes
+        are not damped, there is no such disturbance, or the rotor has no unbalance.
     """
     import control
 
     if not isinstance(plant, Machine):
+        refuse_other(plant, Coefficients, "plant", "a MachineFile, a Machine or Coefficients")
         finite_number(mass, "mass", "kg")
         film = ConstantSupport(plant.stiffness, plant.damping)
         plant, speed = Machine(Rotor.rigid(float(mass or 0.0)), [(0, film)]), plant.speed

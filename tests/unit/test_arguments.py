@@ -69,11 +69,17 @@ def test_paths_in_messages_are_plain() -> None:
 
 @pytest.mark.parametrize("value", [3.5, None, "nonsense", [1, 2]])
 @pytest.mark.parametrize(
-    "call", [rs.analyse_machine, rs.forced_response, rs.largest_disturbance, rs.limit_cycles]
-)
+    "call",
+    [
+        rs.analyse_machine, rs.forced_response, rs.largest_disturbance, rs.limit_cycles, rs.modes,
+        rs.simulate,
+    ],
+)  # fmt: skip
 def test_a_machine_is_asked_for(call, value) -> None:
     with pytest.raises(InputError, match=r"^machine: must be a MachineFile"):
         call(value)
+    with pytest.raises(InputError, match=r"^plant: must be a MachineFile"):
+        rs.state_space(value, speed=900.0)
 
 
 @pytest.mark.parametrize("call", [rs.load_machine, rs.load_scenario])
