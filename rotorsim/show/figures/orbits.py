@@ -119,12 +119,15 @@ def spectrum_cascade(
         ax.fill_between(hertz[row], base, top, color="white", zorder=order)
         ax.plot(hertz[row], top, color="#0b3c5d", linewidth=0.8, zorder=order)
     ends = np.array([rpm[0], rpm[-1]])
+    # the orders go on to above all spectra, where their labels hide nothing
+    above = np.array([rpm[0], float(np.nanmax(rpm[rows] + amplitude[rows].max(axis=1) * scale))])
     for times, style in ((1.0, "-"), (0.5, "--")):
-        ax.plot(times * ends / 60.0, ends, style, color="#D55E00", lw=0.9, zorder=rows.size + 1)
+        ax.plot(times * above / 60.0, above, style, color="#D55E00", lw=0.9, zorder=rows.size + 1)
         ax.annotate(
-            f"{times:g}x", (times * ends[1] / 60.0, ends[1]), xytext=(2, 12),
+            f"{times:g}x", (times * above[1] / 60.0, above[1]), xytext=(0, 2), ha="center",
             textcoords="offset points", fontsize=8, color="#8a3c00", zorder=rows.size + 2,
         )  # fmt: skip
+    ax.set_ylim(top=above[1] + 0.06 * float(np.ptp(above)))
     for (name, (at, expected)), colour in zip((lines or {}).items(), _LINES, strict=False):
         inside = (at * RPM >= ends[0]) & (at * RPM <= ends[1])
         ax.plot(
