@@ -289,7 +289,7 @@ def unbalance_cases(
     factor : Times the residual unbalance.
 
     Without any critical speed the lowest mode at the last speed is taken. Modes of like shape (of
-    the two planes) make one case.
+    the two planes), or with the same unbalances, make one case.
     """
     branches = found.oscillating()
     chosen = [(one.speed, one.branch) for one in critical_speeds(machine, found)]
@@ -305,6 +305,8 @@ def unbalance_cases(
             continue
         deflections.append(line)
         planes = _planes(machine.rotor, line, loads, speed, factor)
+        if any(planes == case.planes for case in cases):
+            continue
         cases.append(_UnbalanceCase(f"mode {len(cases) + 1}", critical, planes))
     return tuple(cases)
 

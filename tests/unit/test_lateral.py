@@ -27,6 +27,7 @@ from rotorsim.machine.peaks import Peak, _find_peaks, node_at, probe_responses, 
 from rotorsim.machine.response import unbalance_response
 from rotorsim.machine.statics import reactions_by_statics, weight
 from rotorsim.machine.support import ConstantSupport, Pedestal
+from rotorsim.machine.thresholds import critical_speeds
 from rotorsim.model.machine import Clearance, Probe
 from rotorsim.model.shaft import Disc, Section
 from rotorsim.rotor import Beam, Rotor, beam_rotor, with_unbalance
@@ -253,6 +254,22 @@ def test_unbalance_is_placed_to_excite_each_mode():
         probe_responses(case.applied(rigid), probe, grid)[0].amplitude for case in (second, first)
     )
     assert own.max() > 20.0 * other.max() * sum(p.amount for p in second.planes) / plane.amount
+
+
+def test_modes_excited_by_the_same_unbalance_make_one_case():
+    beam = Beam((Section(0.6, 0.05),), (Disc(0.3, 40.0, 0.6, 0.3, "wheel"),))
+    rotor = beam_rotor(beam, [0.0, 0.6])
+    nodes = [node_at(rotor, z) for z in (0.0, 0.6)]
+    # soft in one plane, stiff in the other: rigid on its supports there, bent between them here
+    support = ConstantSupport(np.diag([4e6, 4e8]), 2e3 * np.eye(2))
+    machine = Machine(rotor, [(node, support) for node in nodes])
+    loads = reactions_by_statics(rotor, weight(rotor), nodes)[:, 0]
+    found = modes(machine, np.linspace(10.0, 1500.0, 60))
+    cases = unbalance_cases(machine, found, dict(zip(nodes, loads, strict=True)), 1200.0, 4.0)
+    assert len(critical_speeds(machine, found)) > 1
+    planes = [case.planes for case in cases]
+    assert len(set(planes)) == len(planes)
+    assert [case.name for case in cases] == [f"mode {k + 1}" for k in range(len(cases))]
 
 
 def test_an_overhung_mode_takes_the_overhung_mass():
