@@ -44,13 +44,14 @@ def bode_at_probes(
             upper.plot(*place, "o", color=look["color"], mfc="w", ms=4.5, zorder=5)
             if factor is not None and factor >= 2.5:
                 upper.annotate(
-                    f"{place[0]:.0f} rpm\nAF {factor:.1f}", place, xytext=(6, -2), fontsize=7,
-                    textcoords="offset points", color=look["color"], va="top",
+                    f"{place[0]:.0f} rpm\nAF {factor:.1f}", place, xytext=(0, 4), fontsize=7,
+                    textcoords="offset points", color=look["color"], va="bottom", ha="center",
+                    bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5},
                 )  # fmt: skip
     for axes in (upper, lower):
         mark_range(axes, continuous)
     upper.set(ylabel=axis_title("amplitude, zero to peak", "µm"), title=caption(title))
-    upper.set_ylim(bottom=0.0)
+    upper.set_ylim(0.0, 1.15 * upper.get_ylim()[1])  # room for what stands above the peaks
     lower.set(xlabel="shaft speed [rpm]", ylabel="phase lag [deg]")
     step = 30.0 if np.ptp(lower.get_ylim()) < 240.0 else 90.0
     lower.yaxis.set_major_locator(MultipleLocator(step))
