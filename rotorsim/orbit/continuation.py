@@ -17,7 +17,8 @@ from ..arrays import Array, Booleans, ComplexArray, Indices
 from ..compiled import compiled
 from ..errors import InputError
 from ..threads import on_one_blas_thread
-from .motion import Motion, rings_of, static_position
+from .motion import Motion, rings_of
+from .run import static_position
 from .system import MotionSystem, Plain, derivatives, force_on
 
 _HARMONICS = 7

@@ -1,7 +1,7 @@
 """Orbit of one journal in time: its machine of one film, integrated piece by piece.
 
 The equations, the compiled integrator and SciPy's are those of any machine
-(`rotorsim.orbit.system`, `march`, `motion`).
+(`rotorsim.orbit.system`, `march`, `steps`, `run`).
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ from .analysis import recognise
 from .controlled import with_controller
 from .film_force import SolvedFilmForce
 from .forces import ActuatedFilm, LinearForce, find_equilibrium
-from .motion import CHUNK_REVOLUTIONS, Motion, MotionProblem, last_pieces, pieces_of
+from .motion import Motion, MotionProblem
 from .orbit import Orbit, OrbitEvent, OrbitStatus, concatenate
 from .problem import OrbitProblem
+from .run import CHUNK_REVOLUTIONS, last_pieces, pieces_of
 from .system import Harmonic, Link, MotionSystem, translation_columns
 
 

@@ -13,8 +13,9 @@ from ..arrays import Array
 from ..files.machine import MachineFile
 from ..model.machine_orbit import MachineForce, MachineOrbit
 from ..orbit.continuation import Branch, follow_forced, follow_limit_cycle
-from ..orbit.motion import Motion, MotionProblem, simulate_motion
+from ..orbit.motion import Motion, MotionProblem
 from ..orbit.orbit import OrbitStatus
+from ..orbit.run import simulate_motion
 from .machine_motion import motion_problem
 
 

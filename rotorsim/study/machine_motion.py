@@ -21,7 +21,8 @@ from ..model.machine_orbit import MachineOrbit
 from ..model.orbit import SpeedRamp
 from ..orbit.controlled import closed_eigenvalues, signals_of, with_controller
 from ..orbit.film_force import SolvedFilmForce
-from ..orbit.motion import Motion, MotionProblem, Station, simulate_motion
+from ..orbit.motion import Motion, MotionProblem, Station
+from ..orbit.run import simulate_motion
 from ..orbit.system import GROUND, Harmonic, Link, MotionSystem, derivatives
 from ..rotor.reduction import reduce_rotor
 from .machine_control import designed_feedback

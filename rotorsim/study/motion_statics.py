@@ -13,7 +13,7 @@ from ..machine.machine import Machine
 from ..machine.peaks import node_at
 from ..orbit.film_force import SolvedFilmForce
 from ..orbit.forces import StopForce, find_equilibrium
-from ..orbit.motion import static_position
+from ..orbit.run import static_position
 from ..orbit.system import LinearBlock, MotionSystem
 from .motion_supports import MotionParts
 from .rings import ring_state

@@ -15,7 +15,7 @@ from rotorsim.orbit import locked_ratio
 from rotorsim.orbit.analysis import recognise
 from rotorsim.orbit.continuation import follow_forced
 from rotorsim.orbit.forces import CallableForce, ShortBearingForce
-from rotorsim.orbit.motion import simulate_motion
+from rotorsim.orbit.run import simulate_motion
 from rotorsim.orbit.spectrum import whirl_frequency_ratio
 from rotorsim.orbit.system import Link, MotionSystem, derivatives
 from rotorsim.study.limit_cycles import limit_cycles

@@ -14,14 +14,10 @@ from rotorsim.errors import InputError
 from rotorsim.model.supports import Damper, EndSeal, FloatingRing
 from rotorsim.orbit import orbit_ellipse
 from rotorsim.orbit.forces import ShortBearingForce, StopForce
-from rotorsim.orbit.motion import (
-    MotionProblem,
-    Station,
-    TorqueDrive,
-    simulate_motion,
-)
+from rotorsim.orbit.motion import MotionProblem, Station, TorqueDrive
 from rotorsim.orbit.orbit import OrbitStatus
 from rotorsim.orbit.problem import SpeedSchedule
+from rotorsim.orbit.run import simulate_motion
 from rotorsim.orbit.spectrum import whirl_frequency_ratio
 from rotorsim.orbit.system import Link, MotionSystem
 from rotorsim.study.machine_motion import motion_problem, simulate

@@ -12,8 +12,9 @@ from machine_motions import FILMS, two_discs
 from scipy.integrate import solve_ivp
 
 from rotorsim.bearing.drawing import STANDARD_GRAVITY
-from rotorsim.orbit.motion import MotionProblem, simulate_motion
+from rotorsim.orbit.motion import MotionProblem
 from rotorsim.orbit.orbit import OrbitStatus
+from rotorsim.orbit.run import simulate_motion
 from rotorsim.study.machine_motion import motion_problem
 
 pytestmark = pytest.mark.slow

@@ -19,8 +19,8 @@ from rotorsim.model.orbit import ActuatorSettings
 from rotorsim.orbit import OrbitProblem, SpeedSchedule, simulate
 from rotorsim.orbit.film_force import ActuatedSolvedFilm, loaded_film
 from rotorsim.orbit.integrate import motion_problem
-from rotorsim.orbit.motion import _Scipy
 from rotorsim.orbit.orbit import OrbitStatus
+from rotorsim.orbit.steps import Scipy
 from rotorsim.rotor import Rotor
 from rotorsim.study.control import study_control
 
@@ -46,7 +46,7 @@ def rates_by_differences(run: OrbitProblem, at_rest: float = 1e-6) -> np.ndarray
     rest, n = run.force.rest, run.rotor.size
     motion = motion_problem(replace(run, initial_displacement=(0.0, 0.0)), tuple(rest[:2]))
     rates, state = (
-        _Scipy(motion, run.schedule).rates,
+        Scipy(motion, run.schedule).rates,
         np.concatenate([motion.start, motion.velocity]),
     )
     assert np.abs(rates(0.0, state)[n:] / run.force.scales).max() < at_rest * SPEED**2
