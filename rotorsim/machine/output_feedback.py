@@ -286,7 +286,8 @@ def pd_of_sensors(
     corner : Where the derivative ends: kp + kd s/(1 + s/corner) [rad/s].
 
     One pair of gains for x and y of every actuator, of either sign (a sensor beyond a node of the
-    mode needs the other one), by trial over decades, then Nelder and Mead's simplex.
+    mode needs the other one), by trial over decades, then Nelder and Mead's simplex. Modes above
+    the corner, which no such gain moves much, count where they lose half of their decay.
     """
     from scipy.optimize import minimize
 
@@ -312,9 +313,13 @@ def pd_of_sensors(
             sensors=tuple(system.output_labels), actuators=tuple(system.input_labels),
         )  # fmt: skip
 
+    own: Any = np.asarray(system.poles())
+    least = 0.5 * min(own.real[np.abs(own.imag) > corner].max(initial=-np.inf), 0.0)
+
     def growth(gains: Array) -> float:
-        matrix, _ = made(gains).closed_loop(system)
-        return float(np.linalg.eigvals(matrix).real.max())
+        values = np.linalg.eigvals(made(gains).closed_loop(system)[0])
+        left_out = (np.abs(values.imag) > corner) & (values.real < least)
+        return float((values.real if left_out.all() else values.real[~left_out]).max())
 
     size = np.concatenate([[0.0], np.geomspace(1e-3, 1e2, 16)])
     either = np.concatenate([-size[:0:-1], size])

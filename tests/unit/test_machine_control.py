@@ -115,6 +115,21 @@ def test_saturation_in_time_is_that_of_an_integrator():
     assert run.displacement[-1, 0] == pytest.approx(found.y[0, -1], abs=2e-4 * 0.4)
 
 
+def test_no_gain_of_a_pd_is_spent_on_a_mode_far_above_its_corner():
+    def oscillator(frequency, growth, gain):
+        a = [[0.0, 1.0], [-(frequency**2), 2.0 * growth]]
+        return control.ss(a, [[0.0], [gain]], [[1.0, 0.0]], [[0.0]])
+
+    axis = oscillator(300.0, 5.0, 1.0) + oscillator(3e5, -0.01, 1.0)
+    plant = control.append(axis, axis)
+    feedback = pd_of_sensors(plant, 1e4)
+    found = feedback.eigenvalues(plant)
+    high = np.abs(found.imag) > 1e4
+    assert found.real[high].max() < -0.005
+    assert found.real[~high].max() < -100.0
+    assert np.abs(feedback.d).max() < 1e8  # for the sake of that mode it would be 4e10
+
+
 def test_designs_that_cannot_be():
     a = np.diag([0.5, -1.0, -2.0])
     unreached = control.StateSpace(a, [[0.0], [1.0], [1.0]], [[1.0, 1.0, 0.0]], [[0.0]])
