@@ -31,6 +31,10 @@ if TYPE_CHECKING:
     from ..study.machine_control import MachineControlStudy
 
 
+_REACH = 3.0
+"""Multiple of the speed: bending modes far above it decay slowly and hide those below."""
+
+
 class _DesignChoice(StrEnum):
     """Kinds of feedback."""
 
@@ -90,7 +94,7 @@ def control(
     A table of coefficients has no film to try it on: design on it from Python (design_lqr).
 
     On a machine, its films linear, with actuators and sensors anywhere on the shaft:
-    rotorsim control scenarios/machines/plain_rotor.toml --actuator "250 mm" --sensor "400 mm"
+    rotorsim control scenarios/machines/plain_rotor.toml --actuator "250 mm" --max-force "2 kN"
     """
     from .machine_commands import is_machine
 
@@ -170,6 +174,8 @@ def _machine_control(
     settings = dataclasses.replace(loaded.control or MachineControl(()), **wishes)
     loaded = loaded.with_parts(control=settings)
     loaded.check_files()
+    if settings.design is Design.LQR:
+        settings.large_force()  # before the films are solved
     speed = settings.speed or max(loaded.operating.speeds)
     operating = dataclasses.replace(loaded.operating, speed=(speed,))
     names = None if model is None else [model]
@@ -259,6 +265,15 @@ def _machine_tables(study: MachineControlStudy) -> list[Any]:
             number(abs(values[0].imag) / (2.0 * math.pi)),
             *(shown(None if one is None else one * 1e6, "µm") for one in lengths),
         )  # fmt: skip
+        low = values[abs(values.imag) <= _REACH * study.speed]
+        # of a sampled loop no frequency is known, only its rest by the sampling frequency
+        known = not (name == "controlled" and study.feedback.sample_time)
+        if known and low.size and low[0] != values[0] and row["growth_rate"] < 0.0:
+            reach = number(_REACH * study.speed / (2.0 * math.pi), 3)
+            table.add_row(
+                f"  up to {reach} Hz", number(float(low[0].real)),
+                number(abs(low[0].imag) / (2.0 * math.pi)), "", "",
+            )  # fmt: skip
     reduction = study.reduction
     facts = grid("Design", "", "")
     for label, places in (("actuators at", study.actuators), ("sensors at", study.sensors)):

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     import control
 
 
+_MOST_STEPS = 1_000_000
+"""Of a run in time of a linear machine."""
+
+
 @dataclass(frozen=True, eq=False)
 class OutputFeedback:
     """z' = A z + B y + W (f - u), u = C z + D y: forces u from sensors y, f after saturation.
@@ -429,7 +433,15 @@ def run_in_time(
 
     By the matrix exponential: exact with a sampled feedback, and as long as no actuator saturates;
     what saturation takes away is held over a step.
+
+    Raises InputError: The run takes more steps or samples than there is patience for.
     """
+    least = step if feedback is None else min(step, feedback.sample_time or step)
+    if duration > _MOST_STEPS * least:
+        raise InputError(
+            f"takes {duration / least:.2g} steps of {least:.2g} s, at most {_MOST_STEPS} are "
+            "taken: fewer revolutions, or a longer sample time", key="duration",
+        )  # fmt: skip
     a, c = np.asarray(system.A, dtype=float), np.asarray(system.C, dtype=float)
     seen = c if watched is None else watched
     rows: list[tuple[float, Array, Array, float]] = []

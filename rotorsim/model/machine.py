@@ -289,6 +289,19 @@ class MachineControl:
                 value=self.delay,
             )
 
+    def large_force(self) -> float:
+        """Return what counts as a large force for the regulator [N].
+
+        Raises InputError: Neither `force_scale` nor `max_force` says it.
+        """
+        large = self.max_force if self.force_scale is None else self.force_scale
+        if math.isinf(large):
+            raise InputError(
+                'is missing, and no limit (max_force, --max-force "2 kN") stands for it: which '
+                'force is large? "500 N" say', key="control.force_scale",
+            )  # fmt: skip
+        return large
+
 
 def distinct_names(entries: Sequence[Any], word: str) -> tuple[str, ...]:
     """Return the names of entries, those without one numbered: ``support 2``.

@@ -185,11 +185,7 @@ def _continuous(small: Any, settings: MachineControl, speed: float) -> OutputFee
     limit = settings.max_force
     if settings.design is Design.PD:
         return pd_of_sensors(small, _CORNER * speed, limit)
-    large = settings.force_scale or (limit if math.isfinite(limit) else None)
-    if large is None:
-        raise InputError(
-            'is missing, or max_force: which force is large? "500 N" say', key="control.force_scale"
-        )
+    large = settings.large_force()
     return regulator(small, settings.displacement_scale, large, settings.noise, limit)
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from command_line import CommandLine, strict
+from machine_texts import AT_9000_RPM, BEARING, FILMS, OVERHUNG, WHEEL, flexible_rotor
 
 SCENARIO = """
 title = "small"
@@ -55,6 +56,34 @@ def test_design_without_a_run_in_time(here, design):
     assert np.shape(said["gain"]) == (2, 4)
     assert said["controlled"]["status"] is None
     assert said["margins"]["x"]["stable"]
+
+
+def test_a_machine_without_a_large_force_is_refused_before_its_films_are_solved(here):
+    done = here("control", "machines/plain_rotor", "--actuator", "250 mm")
+    assert done.returncode == 2, done.stdout + done.stderr
+    assert "control.force_scale" in done.stderr
+    assert "film points" not in done.stderr
+
+
+@pytest.mark.slow
+def test_a_machine_shows_the_modes_that_its_actuator_moves(here):
+    Path("bearing.toml").write_text(BEARING.format(circumferential=32, axial=8))
+    rotor = flexible_rotor(discs=WHEEL + OVERHUNG) + FILMS + AT_9000_RPM
+    Path("rotor.toml").write_text(rotor)
+    options = ("--actuator", "wheel", "--max-force", "2 kN", "--revolutions", "0")
+    done = here("control", "rotor.toml", *options)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    controlled = next(i for i, line in enumerate(lines) if line.startswith("controlled"))
+    slowest, low = (line.split() for line in lines[controlled : controlled + 2])
+    assert float(slowest[2]) > 10_000.0  # a bending mode that nothing damps
+    assert low[:4] == ["up", "to", "450", "Hz"]
+    assert float(low[4]) < -10.0
+    Path("rotor.toml").write_text(
+        f'{rotor}[control]\nactuator = ["wheel"]\nsample_time = "0.1 ms"\n'
+    )
+    sampled = here("control", "rotor.toml", *options)
+    assert "up to" not in sampled.stdout
 
 
 def test_bad_arguments(here):

@@ -146,3 +146,5 @@ def test_designs_that_cannot_be():
         study('actuator = ["wheel", "500 mm"]\nforce_scale = "500 N"')
     with pytest.raises(InputError, match="which force is large"):
         study('actuator = ["wheel"]')
+    with pytest.raises(InputError, match="fewer revolutions, or a longer sample time"):
+        study('actuator = ["wheel"]\nforce_scale = "500 N"\nsample_time = "1 ns"')
