@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 _MOST_STEPS = 1_000_000
 """Of a run in time of a linear machine."""
+_LARGEST = 1.0
+"""Displacement at which a run ends [m]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -431,6 +433,7 @@ def run_in_time(
     watched : (m, n) array. Further displacements from the state, for `LinearMotion.size`; by
         default the outputs.
 
+    The run ends where it has grown to a metre: a linear one grows for ever, and shows no more.
     By the matrix exponential: exact with a sampled feedback, and as long as no actuator saturates;
     what saturation takes away is held over a step.
 
@@ -450,7 +453,7 @@ def run_in_time(
         """Keep a moment; say whether to go on."""
         size = float(np.abs(seen @ x).max())
         rows.append((t, c @ x, force, size))
-        return np.isfinite(size) and size <= 1e30 and t < duration
+        return np.isfinite(size) and size <= _LARGEST and t < duration
 
     if feedback is None:
         forward, none = held(a, np.zeros((len(a), 0)), step)[0], np.zeros(system.ninputs)
