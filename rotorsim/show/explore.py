@@ -28,6 +28,8 @@ _SHOWN = ("eccentricity_ratio", "min_film_thickness", "max_pressure", "max_tempe
           "power_loss", "side_flow", "critical_mass", "whirl_frequency_ratio")  # fmt: skip
 _SETTLED = 0.35
 """Seconds without a change after which the scenario's own mesh is taken."""
+_WARNING = "color: #c05621"
+"""Read on white and on black."""
 _STYLE = """
 .nicegui-content { padding: 12px; }
 .rotorsim table { border-collapse: collapse; width: 100%; font-size: 14px; }
@@ -187,7 +189,7 @@ class _Page:
         from nicegui import context, ui
 
         ui.add_css(_STYLE)
-        dark = ui.dark_mode()
+        dark = ui.dark_mode(None)  # as the system's
         with ui.header().classes("items-center gap-4 py-2"):
             ui.label("rotorsim explore").classes("text-lg font-bold")
             ui.label(self.scenario.title).classes("ellipsis")
@@ -206,7 +208,7 @@ class _Page:
             with ui.column().classes("rotorsim").style("flex: 1 1 340px; max-width: 560px"):
                 self.state = ui.label("solving").classes("text-sm")
                 self.table = ui.html("", sanitize=False).classes("w-full")
-                self.notes = ui.html("", sanitize=False).classes("text-sm text-orange-800")
+                self.notes = ui.html("", sanitize=False).classes("text-sm").style(_WARNING)
                 chart = ui.html("", sanitize=False).classes("w-full")
             with ui.column().classes("rotorsim").style("flex: 2 1 420px; max-width: 760px"):
                 first, second = (ui.html("", sanitize=False).classes("w-full") for _ in range(2))
