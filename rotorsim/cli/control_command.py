@@ -197,6 +197,10 @@ def _machine_control(
     growth = float(study.controlled_eigenvalues[0].real)
     if growth >= 0.0:
         word = f"unstable: growth rate {growth:.4g} 1/s" if growth else "undamped"
+        unsampled = study.unsampled_growth_rate
+        if unsampled is not None and unsampled < 0.0:
+            word += f", but not before it is sampled ({unsampled:.4g} 1/s): shorten sample_time"
+            word += " or delay"
         output.warn(f"the whole machine stays {word}")
     elif not study.holds:
         output.warn(

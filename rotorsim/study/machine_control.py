@@ -52,6 +52,8 @@ class MachineControlStudy:
         each.
     passive_eigenvalues, controlled_eigenvalues : complex arrays. Of the whole machine [1/s], least
         stable first; undamped ones without real part.
+    unsampled_growth_rate : Of the machine with the design that the controller samples, were it
+        continuous [1/s]; None where it is.
     margin : See `modulus_margin`.
     passive, controlled : Of the whole machine, from the shape of its least stable mode; None
         without a run.
@@ -67,6 +69,7 @@ class MachineControlStudy:
     feedback: OutputFeedback
     passive_eigenvalues: ComplexArray
     controlled_eigenvalues: ComplexArray
+    unsampled_growth_rate: float | None
     margin: float
     passive: LinearMotion | None
     controlled: LinearMotion | None
@@ -139,8 +142,10 @@ def study_machine_control(
             break
         # What the reduced model leaves out is excited by the feedback: leave out less.
         share /= 10.0
-    passive = _least_stable_first(np.asarray(system.A))
-    if not feedback.sample_time:
+    passive, unsampled = _least_stable_first(np.asarray(system.A)), None
+    if feedback.sample_time:
+        unsampled = _continuous(reduction.system, settings, speed).eigenvalues(system)[0].real
+    else:
         controlled = _least_stable_first(feedback.closed_loop(system)[0])
     runs: list[LinearMotion | None] = [None, None]
     if revolutions:
@@ -154,7 +159,8 @@ def study_machine_control(
         ]
     return MachineControlStudy(
         speed, disturbance, settings.design, actuators, sensors, system, reduction, feedback,
-        passive, controlled, modulus_margin(system, feedback), *runs,
+        passive, controlled, None if unsampled is None else float(unsampled),
+        modulus_margin(system, feedback), *runs,
     )  # fmt: skip
 
 

@@ -79,11 +79,14 @@ def test_a_machine_shows_the_modes_that_its_actuator_moves(here):
     assert float(slowest[2]) > 10_000.0  # a bending mode that nothing damps
     assert low[:4] == ["up", "to", "450", "Hz"]
     assert float(low[4]) < -10.0
-    Path("rotor.toml").write_text(
-        f'{rotor}[control]\nactuator = ["wheel"]\nsample_time = "0.1 ms"\n'
-    )
+    settings = f'{rotor}[control]\nactuator = ["wheel"]\nsample_time = '
+    Path("rotor.toml").write_text(f'{settings}"0.1 ms"\n')
     sampled = here("control", "rotor.toml", *options)
     assert "up to" not in sampled.stdout
+    Path("rotor.toml").write_text(f'{settings}"20 ms"\n')  # three turns of the shaft
+    slow = here("control", "rotor.toml", *options)
+    assert slow.returncode == 1, slow.stderr
+    assert "but not before it is sampled" in " ".join(slow.stderr.split())
 
 
 def test_bad_arguments(here):
