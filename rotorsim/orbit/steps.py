@@ -38,8 +38,9 @@ class Rosenbrock:
     """Compiled steps; see `rotorsim.orbit.march`."""
 
     def __init__(self, problem: MotionProblem, schedule: SpeedSchedule) -> None:
-        self.problem, self.knots = problem, schedule.knots
-        self.step = 2.0 * np.pi / max(max(schedule.speeds), 1e-9) / 200.0
+        self.problem: MotionProblem = problem
+        self.knots: Array = schedule.knots
+        self.step: float = 2.0 * np.pi / max(max(schedule.speeds), 1e-9) / 200.0
 
     def _march(self, q: Array, v: Array, start: float, stop: float, times: Array, step: float):
         problem = self.problem
@@ -95,8 +96,9 @@ class Exact:
     """Linear machine at one speed: its matrix exponential, loads as oscillators of their own."""
 
     def __init__(self, problem: MotionProblem, schedule: SpeedSchedule) -> None:
-        self.problem, self.speed = problem, schedule.speeds[0]
-        self.period = 2.0 * np.pi / self.speed / problem.samples_per_revolution
+        self.problem: MotionProblem = problem
+        self.speed: float = schedule.speeds[0]
+        self.period: float = 2.0 * np.pi / self.speed / problem.samples_per_revolution
         self.made: dict[bytes, tuple[Array, Array]] = {}
 
     def _generator(self, middle: float) -> tuple[Array, list[float]]:
@@ -165,16 +167,16 @@ class Scipy:
     """SciPy's LSODA, for films that are solved at each step and for shafts that a torque drives."""
 
     def __init__(self, problem: MotionProblem, schedule: SpeedSchedule | None) -> None:
-        self.problem, self.schedule = problem, schedule
-        self.knots = schedule.knots if schedule is not None else np.zeros((0, 4))
+        self.problem: MotionProblem = problem
+        self.schedule: SpeedSchedule | None = schedule
+        self.knots: Array = schedule.knots if schedule is not None else np.zeros((0, 4))
         system, n = problem.system, problem.system.size
-        self.inverse = np.linalg.inv(system.mass)
+        self.inverse: Array = np.asarray(np.linalg.inv(system.mass), dtype=float)
         top = max(max(problem.drive.speeds), 1.0)
         least = 1e-2 * problem.relative_tolerance * system.scale
-        self.tolerance = np.concatenate([least, top * least])
-        if schedule is None:
-            self.tolerance = np.concatenate([self.tolerance, [1e-9, 1e-9 * top]])
-        self.size = n
+        driven = [] if schedule is not None else [1e-9, 1e-9 * top]  # the shaft's angle and speed
+        self.tolerance: Array = np.concatenate([least, top * least, driven])
+        self.size: int = n
 
     def rates(self, t: float, s: Array) -> Array:
         """Return state rates: displacements, velocities; angle and speed where a torque drives."""
