@@ -34,10 +34,18 @@ _STYLE = """
 .nicegui-content { padding: 12px; }
 .rotorsim table { border-collapse: collapse; width: 100%; font-size: 14px; }
 .rotorsim th, .rotorsim td { padding: 2px 8px; text-align: left; border-bottom: 1px solid #8884; }
+.rotorsim td:not(:first-child) { white-space: nowrap; }
 .rotorsim .number { text-align: right; font-variant-numeric: tabular-nums; }
 .rotorsim .good { color: #1b7a3d; font-weight: 600 }
 .rotorsim .bad { color: #c0392b; font-weight: 600 }
 .rotorsim, .rotorsim > div { min-width: 0; max-width: 100%; }
+.rotorsim .stale { opacity: 0.4; }
+.rotorsim .wrong { color: #c0392b; font-weight: 600 }
+/* On a phone the results stay in sight while a slider moves. */
+@media (max-width: 599px) {
+  .entries { max-height: 36vh; overflow-y: auto; flex-wrap: nowrap; padding-right: 12px;
+    max-width: none !important; }
+}
 .rotorsim svg { width: 100%; height: auto; background: #fff; border-radius: 6px; }
 """
 
@@ -45,7 +53,7 @@ _STYLE = """
 def _point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
     """Solve the scenario of `text`; return numbers, verdict and pictures, or what is wrong.
 
-    Returns: ``rows`` (label, text, unit, SI value), ``verdicts``, ``notes``, ``pictures`` (SVG); or
+    Returns: ``rows`` (see `_Row`), ``verdicts``, ``notes``, ``pictures`` (SVG); or
         ``error``.
     """
     from .figures.bearing import bearing_drawing, film_profiles
@@ -57,33 +65,59 @@ def _point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
         point, curves = point_of(scenario, fine)
     except RotorsimError as error:
         return {"error": str(error)}
-    rows = [
-        (QUANTITIES[name].label, point_text(point, name), QUANTITIES[name].unit,
-         getattr(point, name))
-        for name in _SHOWN
-    ]  # fmt: skip
+    rows = [_row(name, point_text(point, name), getattr(point, name)) for name in _SHOWN]
     verdicts = []
     for curve in curves:
         if curve.growth_rate is None or not np.isfinite(curve.growth_rate[0]):
             continue
         rate, model = float(curve.growth_rate[0]), model_label(curve.choices["thermal_model"])
         label = f"{QUANTITIES['growth_rate'].label}, {model}"
-        rows.append((label, number(rate), QUANTITIES["growth_rate"].unit, rate))
+        rows.append(_row("growth_rate", number(rate), rate, label))
         said = "unstable" if rate > 0.0 else "undamped" if rate == 0.0 else "stable"
         verdicts.append((f"verdict, {model}", said))
     pictures = []
     if point.fields is not None and point.converged:
-        drawing = bearing_drawing(point, scenario.bearing.journal_radius)
+        drawing = bearing_drawing(point, scenario.bearing)
         # Constrained layout draws everything twice; the drawing has nothing that needs it.
         drawing.set_layout_engine("none")
         drawing.axes[0].set_position((0.0, 0.1, 1.0, 0.9))
         pictures = [_svg(figure_bytes(drawing))]
         if fine:
-            pictures.append(_svg(figure_bytes(film_profiles([point]))))
+            pictures.append(_svg(figure_bytes(film_profiles([point], size=(6.4, 2.8)))))
     notes = [point.message] if point.message else []
     status = "" if point.converged else point_status(point)
     return {"rows": rows, "verdicts": verdicts, "status": status, "pictures": pictures,
             "notes": [*notes, *point.warnings]}  # fmt: skip
+
+
+_Row = tuple[str, str, str, str, float | None]
+"""Label, text, unit, name in `QUANTITIES`, SI value (None: there is none, or not one alone)."""
+
+
+def _row(name: str, text: str, value: float | None, label: str = "") -> _Row:
+    """Return the row of a result; words have no unit."""
+    quantity = QUANTITIES[name]
+    unit = quantity.unit if text[-1:].isdigit() else ""
+    return (label or quantity.label, text, unit, name, value)
+
+
+def _compared(name: str, value: float | None, base: float | None) -> tuple[str, str]:
+    """Return the baseline's text, and the change from it: in per cent, or in its unit.
+
+    In its unit where a share says nothing: temperatures, and rates of either sign.
+
+    value, base : SI.
+    """
+    if base is None:
+        return ("", "")
+    quantity = QUANTITIES[name]
+    if value is None:
+        return (quantity.text(base), "")
+    change = value - base
+    if quantity.offset or name == "growth_rate":
+        unit = "K" if quantity.unit == "°C" else quantity.unit
+        return (quantity.text(base), f"{change * quantity.factor:+.1f} {unit}")
+    return (quantity.text(base), f"{100.0 * change / base:+.1f} %" if base else "")
 
 
 def _map_outcome(text: str, units: str, fine: bool, speeds: list[float]) -> dict[str, Any]:
@@ -109,7 +143,8 @@ def _map_outcome(text: str, units: str, fine: bool, speeds: list[float]) -> dict
     return {"thresholds": found, "pictures": [_svg(figure_bytes(figure))]}
 
 
-def _thresholds(table: Any, rotor: Any) -> list[tuple[str, str]]:
+def _thresholds(table: Any, rotor: Any) -> list[_Row]:
+    """Return a row for each thermal model's thresholds."""
     from ..study.stability import stability_curves
     from .figures.style import model_label
 
@@ -117,9 +152,10 @@ def _thresholds(table: Any, rotor: Any) -> list[tuple[str, str]]:
         return []
     quantity, rows = QUANTITIES["threshold_speed"], []
     for curve in stability_curves(table, rotor):
-        speeds = ", ".join(quantity.text(speed) for speed in curve.threshold_speeds)
+        speeds = [float(speed) for speed in curve.threshold_speeds]
+        text = ", ".join(map(quantity.text, speeds)) or "none on the map"
         label = f"{quantity.label}, {model_label(curve.choices['thermal_model'])}"
-        rows.append((label, speeds or "none in the range"))
+        rows.append(_row("threshold_speed", text, speeds[0] if len(speeds) == 1 else None, label))
     return rows
 
 
@@ -181,7 +217,6 @@ class _Page:
         self.pinned: dict[str, float] = {}
         self.point: dict[str, Any] = {}
         self.chart: dict[str, Any] = {}
-        self.speeds = speeds_about(scenario, 9)
         self.tasks: list[asyncio.Task[None]] = []
         self.build()
 
@@ -192,7 +227,7 @@ class _Page:
         dark = ui.dark_mode(None)  # as the system's
         with ui.header().classes("items-center gap-4 py-2"):
             ui.label("rotorsim explore").classes("text-lg font-bold")
-            ui.label(self.scenario.title).classes("ellipsis")
+            ui.label(self.scenario.title).classes("ellipsis gt-xs")
             ui.space()
             ui.toggle(
                 {"si": "SI", "us": "US"}, value=self.units, on_change=self.change_units
@@ -200,9 +235,9 @@ class _Page:
             ui.button("Pin as baseline", on_click=self.pin)
             ui.button("Save as TOML", on_click=self.save)
             ui.button("Report", on_click=self.report)
-            ui.switch("Dark").bind_value(dark, "value")
+            ui.switch("Dark").props("color=grey-5").bind_value(dark, "value")
         with ui.row().classes("w-full items-start gap-6"):
-            with ui.column().classes("gap-1").style("flex: 1 1 270px; max-width: 420px"):
+            with ui.column().classes("entries gap-1").style("flex: 1 1 270px; max-width: 420px"):
                 self.panel = ui.column().classes("w-full gap-1")
                 self.fields()
             with ui.column().classes("rotorsim").style("flex: 1 1 340px; max-width: 560px"):
@@ -298,14 +333,19 @@ class _Page:
             if seen == self.version:
                 await asyncio.sleep(0.05)
                 continue
-            seen, self.chart = await self.asked(_map_outcome, False, self.speeds)
+            seen, self.chart = await self.asked(_map_outcome, False, self.speeds())
             self.show_map()
             if not await self.rested(seen):
                 continue
-            version, chart = await self.asked(_map_outcome, True, self.speeds)
+            version, chart = await self.asked(_map_outcome, True, self.speeds())
             if version == self.version:
                 self.chart = chart
                 self.show_map()
+
+    def speeds(self) -> list[float]:
+        """Return the speeds of the map, past the present one [rad/s]."""
+        speeds, here = speeds_about(self.scenario, 9), self.values["operating", "speed"] / RPM
+        return [float(speed) for speed in np.linspace(speeds[0], max(speeds[-1], 1.1 * here), 9)]
 
     async def rested(self, version: int) -> bool:
         """Wait a moment; return whether nothing has changed."""
@@ -315,21 +355,19 @@ class _Page:
     def show(self, mesh: str) -> None:
         """Put numbers, verdict and pictures of the point in place."""
         point = self.point
-        if "error" in point:
-            self.state.set_text(point["error"])
+        wrong = point.get("error", "")
+        self.state.set_text(wrong or f"{point['status'] or 'converged'} on {mesh}")
+        # What is still shown belongs to the values before.
+        for place, name in [(self.state, "wrong"), (self.table, "stale"), (self.notes, "stale")]:
+            place.classes(add=name if wrong else "", remove="" if wrong else name)
+        if wrong:
             return
-        said = f"{point['status'] or 'converged'} on {mesh}"
-        self.state.set_text(said)
-        rows = []
-        for label, text, unit, value in point["rows"]:
-            base = self.pinned.get(label)
-            change = "" if not base or value is None else f"{100.0 * (value / base - 1.0):+.1f} %"
-            pinned = "" if base is None else _again(label, base)
-            rows.append((label, text, unit, pinned, change))
-        for label, text in self.chart.get("thresholds", ()):
-            rows.append((label, text, QUANTITIES["threshold_speed"].unit, "", ""))
-        rows = [(label, said, "", "", "") for label, said in point["verdicts"]] + rows
-        head = ("", "now", "", "baseline", "change")
+        head, results = ["", "now", ""], self.rows()
+        rows = [row[:3] for row in results]
+        if self.pinned:
+            head += ["baseline", "change"]
+            rows = [(*row[:3], *_compared(*row[3:], self.pinned.get(row[0]))) for row in results]
+        rows = [(*verdict, *[""] * (len(head) - 2)) for verdict in point["verdicts"]] + rows
         self.table.set_content(table_html(head, rows, texts=1))
         self.notes.set_content("".join(f"<p>{_escaped(note)}</p>" for note in point["notes"]))
         for place, picture in zip(self.pictures[:2], point["pictures"], strict=False):
@@ -342,10 +380,13 @@ class _Page:
             if self.point:
                 self.show(self.state.text.partition(" on ")[2])
 
+    def rows(self) -> list[_Row]:
+        """Return the results shown: of the point, and what the map adds."""
+        return [*self.point.get("rows", ()), *self.chart.get("thresholds", ())]
+
     def pin(self) -> None:
         """Keep the present numbers beside the coming ones."""
-        self.pinned = {label: value for label, _, _, value in self.point.get("rows", ())
-                       if value is not None}  # fmt: skip
+        self.pinned = {label: value for label, _, _, _, value in self.rows() if value is not None}
         self.show(self.state.text.partition(" on ")[2])
 
     def save(self) -> None:
@@ -376,11 +417,6 @@ class _Page:
 
 _ALWAYS = ("speed", "radial_clearance")
 """Entries that may be lists in the file: the page has one value."""
-
-
-def _again(label: str, value: float) -> str:
-    quantity = next((one for one in QUANTITIES.values() if one.label == label), None)
-    return number(value) if quantity is None else quantity.text(value)
 
 
 def _escaped(text: str) -> str:

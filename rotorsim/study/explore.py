@@ -102,7 +102,7 @@ _KNOBS: tuple[tuple[_Path, str, str, tuple[float, float], bool], ...] = (
     (("bearing", "pads", "preload"), "Preload of the pads", "", (0.0, 0.7), False),
     (("bearing", "pads", "offset"), "Offset of the pivots", "", (0.4, 0.7), False),
     (("bearing", "pads", "arc"), "Arc of a pad", "deg", (0.6, 1.1), True),
-    (("bearing", "groove", "*", "extent"), "Groove", "deg", (0.3, 2.5), True),
+    (("bearing", "groove", "*", "extent"), "Extent, groove", "deg", (0.3, 2.5), True),
     (("bearing", "groove", "*", "supply_pressure"), "Supply pressure, groove", "kPa",
      (0.0, 4.0), True),
     (("lubricant", "viscosity"), "Viscosity", "mPa s", (0.3, 3.0), True),

@@ -16,6 +16,8 @@ from browser import CHROMIUM, browser
 from rotorsim.errors import InputError
 from rotorsim.files.scenario import load_scenario
 from rotorsim.rows import show_units
+from rotorsim.show.explore import _compared
+from rotorsim.show.figures.bearing import bearing_drawing
 from rotorsim.study.explore import knobs, point_of, varied
 
 _PICTURES = "document.querySelectorAll('.rotorsim svg').length"
@@ -59,7 +61,7 @@ def test_what_was_set_in_inches_is_saved_in_inches():
 
 def test_each_groove_has_its_knobs():
     labels = [knob.label for knob in knobs(load_scenario("two_groove"))]
-    assert {"Groove 1", "Groove 2", "Supply pressure, groove 1"} <= set(labels)
+    assert {"Extent, groove 1", "Extent, groove 2", "Supply pressure, groove 1"} <= set(labels)
 
 
 def test_a_refused_value_is_named():
@@ -75,6 +77,29 @@ def test_coarse_and_fine_point_agree_within_some_per_cent():
     (coarse, _), (fine, curves) = (point_of(varied(scenario, values), on) for on in (False, True))
     assert coarse.power_loss == pytest.approx(fine.power_loss, rel=0.05)
     assert [curve.choices["thermal_model"] for curve in curves] == ["isothermal", "thd"]
+
+
+def test_changes_of_signed_values_and_temperatures_are_not_in_per_cent():
+    assert _compared("power_loss", 1100.0, 1000.0) == ("1", "+10.0 %")
+    assert _compared("max_temperature", 353.15, 363.15) == ("90", "-10.0 K")
+    assert _compared("growth_rate", 20.0, -10.0) == ("-10", "+30.0 1/s")
+    assert _compared("threshold_speed", None, 100.0)[1] == ""
+    show_units("us")
+    assert _compared("max_temperature", 353.15, 363.15) == ("194", "-18.0 °F")
+
+
+def test_no_film_is_drawn_between_pads():
+    scenario = load_scenario("pads_four_on")
+    named = {knob.path: knob for knob in knobs(scenario)}
+    point, _ = point_of(varied(scenario, {named["operating", "speed"]: 3000.0}), fine=False)
+    drawing = bearing_drawing(point, scenario.bearing)
+    outlines = [line for line in drawing.axes[0].lines if line.get_linewidth() == 1.4]
+    assert len(outlines) == 4
+    inside = [
+        any(pad.leading_edge < angle < pad.trailing_edge for pad in scenario.bearing.pads)
+        for angle in point.fields.theta
+    ]
+    assert sum(line.get_xdata().size for line in outlines) == sum(inside) < len(inside)
 
 
 @pytest.mark.slow

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ...bearing.operating_point import FilmFields, OperatingPoint
 from ...bearing.table import CoefficientTable
 from ...errors import InputError
+from ...model import Bearing
 from ...rows import QUANTITIES, RPM, ZERO_CELSIUS, axis_title, in_shown_unit, number, shown_unit
 from ...study.measured import Measured, curves, shown_as
 from ...study.stability import StabilityCurve
@@ -134,7 +135,7 @@ def _legend_below(figure: Figure, ax: Axes) -> None:
 
 
 def bearing_drawing(
-    point: OperatingPoint, journal_radius: float, title: str = "", ax: Axes | None = None
+    point: OperatingPoint, bearing: Bearing, title: str = "", ax: Axes | None = None
 ) -> Figure:
     """Return cross-section at mid-plane, load down.
 
@@ -145,15 +146,16 @@ def bearing_drawing(
 
     Raises InputError: The point was solved without its fields.
     """
-    film, radius = _fields(point), journal_radius
+    film, radius = _fields(point), bearing.journal_radius
     ax = axes_or_new(ax, (5.2, 4.6))
     middle = int(np.abs(film.y).argmin())
-    clearance = point.running_clearance
-    magnified = 0.24 * radius / clearance
-    eccentricity = magnified * clearance * point.eccentricity_ratio
-    centre = eccentricity * np.array([np.cos(point.attitude_angle), np.sin(point.attitude_angle)])
+    attitude = point.attitude_angle
+    eccentricity = point.running_clearance * point.eccentricity_ratio
+    # From the bearing's centre, so that pockets and the ends of pads stay within the ring.
+    depth = film.film_thickness[:, middle] + eccentricity * np.cos(film.theta - attitude)
+    magnified = 0.26 * radius / float(depth.max())
+    centre = magnified * eccentricity * np.array([np.cos(attitude), np.sin(attitude)])
     heat = _mean_temperature(film)
-    gaps = _gaps(film.theta)
     colours = matplotlib.colormaps["inferno"]
     warm = None if heat is None else (float(heat.min()), float(heat.max()))
     top = max(float(film.pressure[:, middle].max()), 1e-30)
@@ -166,9 +168,9 @@ def bearing_drawing(
         x, y = centre[0] + radial * np.cos(angle), centre[1] + radial * np.sin(angle)
         return np.column_stack([y, -x]) / radius
 
-    for first, last in zip([0, *gaps], [*gaps, film.theta.size], strict=True):
+    for first, last in _lands(film.theta, bearing):
         angle, h = film.theta[first:last], magnified * film.film_thickness[first:last, middle]
-        closed = not gaps and last - first > 2
+        closed = last - first == film.theta.size
         if closed:
             angle, h = np.append(angle, angle[0] + 2 * np.pi), np.append(h, h[0])
         inner, outer = place(np.full(h.size, radius), angle), place(radius + h, angle)
@@ -197,9 +199,8 @@ def bearing_drawing(
     ax.annotate("", sweep[-1], sweep[-3], arrowprops=head)
     ax.plot([0.0], [0.0], "+", color="#777777", ms=9)
     ax.plot(*place(np.zeros(1), np.zeros(1)).T, "o", color="k", ms=3)
-    label = f"film magnified {number(magnified, 2)} times, p max "
-    most = QUANTITIES["max_pressure"]
-    label += f"{most.text(point.max_pressure)} {most.unit}"
+    label = f"film magnified {number(magnified, 2)} times; blue: pressure, at most "
+    label += QUANTITIES["max_pressure"].with_unit(point.max_pressure, 3)
     if heat is not None and warm is not None:
         low, high = (number(value, 3) for value in warm)
         label += (
@@ -218,10 +219,15 @@ def _arrow(ax: Axes, start: Array, way: tuple[float, float], label: str) -> None
     ax.text(end[0] + 0.05, end[1], label, fontsize=8, va="center")
 
 
-def _gaps(theta: Array) -> list[int]:
-    """Return cells with which a new film begins: behind a groove or between pads."""
+def _lands(theta: Array, bearing: Bearing) -> list[tuple[int, int]]:
+    """Return the first cell and the one past the last of each film: pads, lands between grooves."""
+    if bearing.pads:
+        # The mesh has cells between the pads too, as thick as the clearance there.
+        edges = [(pad.leading_edge, pad.trailing_edge) for pad in bearing.pads]
+        return [(int(first), int(last)) for first, last in np.searchsorted(theta, edges)]
     steps = np.diff(theta)
-    return [int(k) + 1 for k in np.flatnonzero(steps > 2.5 * np.median(steps))]
+    gaps = [int(k) + 1 for k in np.flatnonzero(steps > 2.5 * np.median(steps))]
+    return list(zip([0, *gaps], [*gaps, theta.size], strict=True))
 
 
 def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
@@ -257,12 +263,18 @@ def film_maps(points: Sequence[OperatingPoint], title: str = "") -> Figure:
     return figure
 
 
-def film_profiles(points: Sequence[OperatingPoint], title: str = "") -> Figure:
-    """Return pressure and temperature around the bearing at mid-plane, all films in one picture."""
+def film_profiles(
+    points: Sequence[OperatingPoint], title: str = "", size: tuple[float, float] = (8.5, 3.2)
+) -> Figure:
+    """Return pressure and temperature around the bearing at mid-plane, all films in one picture.
+
+    size : Width and height of the figure with both [inches]; pressure alone takes half the width.
+    """
     films = [_fields(point) for point in points]
     heat = [_mean_temperature(film) for film in films]
     warm = any(values is not None for values in heat)
-    figure, axes = new_axes(1, 2 if warm else 1, (8.5 if warm else 4.6, 3.2), title)
+    width = size[0] if warm else 0.54 * size[0]
+    figure, axes = new_axes(1, 2 if warm else 1, (width, size[1]), title)
     for point, film, temperature in zip(points, films, heat, strict=True):
         middle = int(np.abs(film.y).argmin())
         angle, order = _angles(film.theta)
