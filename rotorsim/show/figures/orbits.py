@@ -480,4 +480,5 @@ class _Scene:
         ax.set(
             xlabel="turns of the shaft", ylabel=axis_title("x, y", "µm"), xlim=(turns[0], turns[-1])
         )
+        ax.locator_params(axis="x", nbins=6, prune="upper")
         ax.legend(loc="upper left", ncols=2)

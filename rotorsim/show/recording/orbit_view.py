@@ -97,8 +97,8 @@ def orbit_view(run: Run, zoom: float | None = None) -> rrb.Spatial2DView:
     reach = (1.32 * run.reach if zoom is None else zoom) * MICRO
     x0, y0 = run.orbit.centre if zoom is None else run.orbit.equilibrium
     centre = _view_points(x0, y0).astype(float)
-    # The force's scale belongs to the whole circle.
-    hidden = [] if zoom is None else [f"- /{root}/film_force_N"]
+    # The force's scale belongs to the whole circle, and its edge would cut the legend.
+    hidden = [] if zoom is None else [f"- /{root}/film_force_N", f"- /{root}/legend"]
     title = "Orbit" if zoom is None else f"Close-up, {2.0 * reach:.2g} µm wide"
     turns = abs(run.orbit.revolutions[-1] - run.orbit.revolutions[0])
     seconds = float(run.orbit.t[-1] - run.orbit.t[0]) * min(
@@ -133,10 +133,14 @@ def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
     centre = _view_points(*run.orbit.centre)
     line = _view_points(*run.orbit.boundary.T) + centre
     radius = f"{run.orbit.radial_clearance * MICRO:.4g} µm"
-    words = ["x, load", "y", f"radius {radius}"]
+    points = once_per_turn(run.orbit)
+    contact = f"journal touches, c = {radius}" if run.orbit.has_film else f"radius {radius}"
+    words = ["x, load", "y", contact]
+    corners = [[1.1, -0.04], [0.14, -1.0], [0.0, 1.06]]
     if run.orbit.has_film:
-        words = ["x, load", "y", f"journal touches, c = {radius}", "green: film force"]
-    corners = [[1.1, -0.04], [0.0, -1.2], [0.0, 1.06], [-0.8, -1.2]][: len(words)]
+        legend = "green: film force" + ("" if points is None else "\nred: once per turn")
+        place = centre + reach * np.array([[-0.8, -1.2]])
+        log_labels(stream, f"{root}/legend", place.tolist(), [legend], LABEL)
     stream.log(
         f"{root}/clearance_um",
         rr.LineStrips2D([line], radii=rr.Radius.ui_points(1.2), colors=TEXT),
@@ -173,7 +177,6 @@ def log_surroundings(stream: rr.RecordingStream, run: Run) -> None:
         ),
         static=True,
     )
-    points = once_per_turn(run.orbit)
     if points is not None:
         stream.log(
             f"{root}/once_per_turn_um",
@@ -238,7 +241,10 @@ def _send_force(
     )
     stream.log(
         entity,
-        rr.Arrows2D.from_fields(radii=rr.Radius.ui_points(1.2), colors=(0, 158, 115)),
+        # Above the path, which fills what a whirling journal has swept.
+        rr.Arrows2D.from_fields(
+            radii=rr.Radius.ui_points(1.2), colors=(0, 158, 115), draw_order=47.0
+        ),
         static=True,
     )
     rows = thin(len(points), _TRAIL_LIMIT)
