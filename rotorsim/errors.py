@@ -81,3 +81,15 @@ class TableError(InputError):
 
 class OutOfRangeError(InputError):
     """A look-up outside the tabulated range; the message gives the bounds."""
+
+
+def interruption(error: BaseException) -> KeyboardInterrupt | None:
+    """Return the interruption that `error` hides, if it does.
+
+    A signal that arrives while compiled code hands its result over comes out as a chain of
+    `SystemError` that ends in the interruption.
+    """
+    hidden: BaseException | None = error
+    while isinstance(hidden, SystemError):
+        hidden = hidden.__cause__ or hidden.__context__
+    return hidden if isinstance(hidden, KeyboardInterrupt) else None

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from ..errors import InputError, RotorsimError
+from ..errors import InputError, RotorsimError, interruption
 from ..rows import show_units
 
 if TYPE_CHECKING:
@@ -64,8 +64,23 @@ class Output:
         if not (self.json or self.quiet):
             with _on_stdout():
                 for part in parts:
-                    self.people.print(part)
+                    self._print_whole(part)
                     self.people.print()
+
+    def _print_whole(self, part: RenderableType) -> None:
+        """Print a part; where the terminal is too narrow it breaks lines, and no number is cut."""
+        from rich.measure import Measurement
+        from rich.table import Table
+
+        console, width = self.people, self.people.width
+        wide = console.options.update(max_width=_TABLE_WIDTH)
+        for column in part.columns if isinstance(part, Table) else ():
+            if column.no_wrap and column.overflow == "ellipsis":
+                cells = [column.header, *column.cells]
+                column.min_width = max(Measurement.get(console, wide, one).maximum for one in cells)
+        console.width = max(width, Measurement.get(console, wide, part).minimum)
+        console.print(part)
+        console.width = width
 
     def results(
         self, document: dict[str, Any], parts: Callable[[], Iterable[RenderableType]]
@@ -158,11 +173,12 @@ def guarded(command: Callable[..., int]) -> Callable[..., None]:
             with _reusing(output, options.pop("fresh")) if solves else nullcontext():
                 code = command(output, **options)
         except Exception as error:
-            code = _explain(_naming_machine(error, options), output)
+            if stop := interruption(error):
+                code = _interrupted(stop, output)
+            else:
+                code = _explain(_naming_machine(error, options), output)
         except KeyboardInterrupt as stop:
-            kept = "; ".join(output.kept) or "nothing was changed"
-            output.errors.print(f"interrupted: {kept}")
-            code = getattr(stop, "exit_code", _INTERRUPTED)
+            code = _interrupted(stop, output)
         raise typer.Exit(code)
 
     signature = inspect.signature(command, eval_str=True)
@@ -253,6 +269,12 @@ def _naming_machine(error: Exception, options: dict[str, Any]) -> Exception:
     if path is None:
         return error
     return InputError(error.message, source=path, key=error.key, value=error.value)
+
+
+def _interrupted(stop: KeyboardInterrupt, output: Output) -> int:
+    kept = "; ".join(output.kept) or "nothing was changed"
+    output.errors.print(f"interrupted: {kept}")
+    return getattr(stop, "exit_code", _INTERRUPTED)
 
 
 def _explain(error: Exception, output: Output) -> int:

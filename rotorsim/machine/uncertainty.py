@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Array
-from ..errors import InputError, RotorsimError
+from ..errors import InputError, RotorsimError, interruption
 
 _Mapper = Callable[[Callable[[Any], Any], Iterable[Any]], Iterable[Any]]
 
@@ -226,4 +226,6 @@ class _Guarded:
         except SampleError as error:
             return str(error)
         except Exception as error:
+            if stop := interruption(error):
+                raise stop from None
             return f"{type(error).__name__}: {error}"

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..bearing.drawing import STANDARD_GRAVITY
 from ..compiled import is_kept
-from ..errors import InputError, RotorsimError
+from ..errors import InputError, RotorsimError, interruption
 from ..model.orbit import OrbitForce, SpeedRamp
 from ..orbit.description import describe_orbit
 from . import orbits as orbit_steps
@@ -101,6 +101,8 @@ class Attempts:
         except RotorsimError as error:
             self.problems.append(f"{label}: {error}")
         except Exception as error:
+            if stop := interruption(error):
+                raise stop from None
             # A fault in one step must not cost what the others computed.
             place = traceback.extract_tb(error.__traceback__)[-1]
             where = f"{Path(place.filename).name}:{place.lineno}"

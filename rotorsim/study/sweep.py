@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 from ..arguments import refuse_path
 from ..bearing.operating_point import OperatingPoint, failed_point
 from ..compiled import is_kept
-from ..errors import InputError
+from ..errors import InputError, interruption
 from ..film.rupture.reynolds import active_set
 from ..model import Case
 from .finished import Journal, PointStore, model_digest
@@ -73,6 +73,8 @@ def _along_speed(chunk: _Chunk, solve_case: Callable[..., Any] | None) -> Iterat
         except InputError:
             raise  # true of the whole case: to be told, not to be tabulated
         except Exception as error:
+            if stop := interruption(error):
+                raise stop from None
             # Whatever a solver may raise: the sweep goes on, the message travels with the point.
             point = failed_point(chunk.case, speed, f"{type(error).__name__}: {error}")
             initial = None

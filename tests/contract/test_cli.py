@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -500,3 +501,30 @@ def test_help_shows_words_in_square_brackets():
     from rotorsim.cli.app import app
 
     assert "[transient]" in CliRunner().invoke(app, ["transient", "--help"]).output
+
+
+@pytest.mark.skipif(os.name == "nt", reason="POSIX terminals")
+def test_a_narrow_terminal_cuts_no_number(tmp_path):
+    import fcntl
+    import pty
+    import struct
+    import termios
+
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 40, 0, 0))
+    with_terminal = {**environment(), "TERM": "xterm"}
+    del with_terminal["COLUMNS"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "rotorsim", "check", str(QUICK)],
+        cwd=tmp_path, env=with_terminal, stdout=theirs, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    os.close(theirs)
+    said = b""
+    # Linux reports the end of a terminal as an error.
+    with contextlib.suppress(OSError):
+        while part := os.read(ours, 65536):
+            said += part
+    os.close(ours)
+    assert process.wait(30) == 0
+    assert "Sommerfeld" in said.decode()
+    assert "…" not in said.decode()

@@ -137,6 +137,20 @@ def test_the_journal_is_not_used_for_another_case(tmp_path):
     assert len(other.calls) == len(SPEEDS)
 
 
+def test_an_interruption_inside_compiled_code_ends_the_sweep():
+    def solver(case, speed, initial=None):
+        try:
+            raise KeyboardInterrupt
+        except KeyboardInterrupt as stop:
+            try:
+                raise SystemError("returned a result with an exception set") from stop
+            except SystemError as error:
+                raise SystemError("once more") from error
+
+    with pytest.raises(KeyboardInterrupt):
+        sweep_points(CASES, SPEEDS, workers=1, solve_case=solver)
+
+
 def test_failed_points_are_tried_again_on_resuming(tmp_path):
     journal = tmp_path / "sweep.journal"
     broken = FakeSolver(broken=(SPEEDS[3],))
