@@ -77,7 +77,8 @@ def _point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
         verdicts.append((f"verdict, {model}", said))
     pictures = []
     if point.fields is not None and point.converged:
-        drawing = bearing_drawing(point, scenario.bearing)
+        turned = scenario.bearing.turned(-scenario.load_direction)  # as the point has it
+        drawing = bearing_drawing(point, turned)
         # Constrained layout draws everything twice; the drawing has nothing that needs it.
         drawing.set_layout_engine("none")
         drawing.axes[0].set_position((0.0, 0.1, 1.0, 0.9))

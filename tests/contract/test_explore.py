@@ -88,15 +88,17 @@ def test_changes_of_signed_values_and_temperatures_are_not_in_per_cent():
     assert _compared("max_temperature", 353.15, 363.15) == ("194", "-18.0 °F")
 
 
-def test_no_film_is_drawn_between_pads():
-    scenario = load_scenario("pads_four_on")
+@pytest.mark.parametrize("direction", ["0 deg", "45 deg", "-100 deg"])
+def test_no_film_is_drawn_between_pads(direction):
+    scenario = load_scenario("pads_four_on").replace(load_direction=direction)
+    bearing = scenario.bearing.turned(-scenario.load_direction)
     named = {knob.path: knob for knob in knobs(scenario)}
     point, _ = point_of(varied(scenario, {named["operating", "speed"]: 3000.0}), fine=False)
-    drawing = bearing_drawing(point, scenario.bearing)
+    drawing = bearing_drawing(point, bearing)
     outlines = [line for line in drawing.axes[0].lines if line.get_linewidth() == 1.4]
     assert len(outlines) == 4
     inside = [
-        any(pad.leading_edge < angle < pad.trailing_edge for pad in scenario.bearing.pads)
+        any(pad.leading_edge < angle < pad.trailing_edge for pad in bearing.pads)
         for angle in point.fields.theta
     ]
     assert sum(line.get_xdata().size for line in outlines) == sum(inside) < len(inside)

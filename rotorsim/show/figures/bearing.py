@@ -144,6 +144,7 @@ def bearing_drawing(
     Diameters are to scale among each other; the film is magnified by the factor that the picture
     names. Pressure is the shaded line outside the bore.
 
+    bearing : In the load frame, as a `Case` has it.
     Raises InputError: The point was solved without its fields.
     """
     film, radius = _fields(point), bearing.journal_radius
