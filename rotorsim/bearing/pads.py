@@ -9,7 +9,7 @@ import numpy as np
 from ..arrays import Array
 from ..film.bending import pad_bending
 from ..film.geometry import CENTER, pad_unknowns
-from ..film.heat import entering_temperature
+from ..film.inlets import entering_temperature
 from ..film.pad_frame import pad_frames
 from ..film.solution import FilmSolution
 from ..model import Bearing, Cavitation, Feed

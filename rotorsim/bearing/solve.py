@@ -14,7 +14,8 @@ from ..errors import InputError
 from ..film.banded import NoFilmError, SingularFilmError
 from ..film.flow import FilmFlow, film_flow
 from ..film.geometry import rotation
-from ..film.heat import HeatBalance, with_groove_oil
+from ..film.heat import HeatBalance
+from ..film.inlets import with_groove_oil
 from ..film.linearization import following_stiffness
 from ..film.losses import (
     friction_force,

@@ -36,9 +36,9 @@ from .heat import (
     dissipated_power,
     energy_problem,
     heat_balance,
-    inlet_temperatures,
     loss_per_degree,
 )
+from .inlets import inlet_temperatures
 from .layers import layer_integrals
 from .problem import FilmProblem, FilmState, film_state
 from .walls import FilmContact, Walls, choose_walls

@@ -9,7 +9,7 @@ from scenario_texts import BEARING, OIL
 from rotorsim.bearing.operating_point import point_from_dict, point_to_dict
 from rotorsim.bearing.solve import operating_point
 from rotorsim.files.scenario import Scenario
-from rotorsim.film.heat import NORTH, _layer_fluxes
+from rotorsim.film.inlets import NORTH, layer_fluxes
 from rotorsim.film.solution import solve_film
 
 TEXT = f"""\
@@ -43,7 +43,7 @@ def test_outlet_temperature_is_that_of_the_oil_at_the_ends():
     assert solution.thermal is not None
     energy = solution.thermal.energy
     ends = ~energy.interior[NORTH] & ~energy.fixed
-    flow = _layer_fluxes(energy, NORTH, ends)
+    flow = layer_fluxes(energy, NORTH, ends)
     leaving = solution.thermal.leaving_temperature[1][ends]
     assert point.outlet_temperature == pytest.approx(np.sum(flow * leaving) / np.sum(flow), abs=0.5)
     assert point.outlet_temperature is not None

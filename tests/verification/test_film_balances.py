@@ -12,7 +12,8 @@ from tolerances import HALF_SOMMERFELD_POWER, HEAT_BALANCE, MASS_BALANCE, ROUNDI
 
 from rotorsim.bearing.solve import operating_point, solve_case
 from rotorsim.film.flow import film_flow
-from rotorsim.film.heat import _layer_fluxes, energy_problem
+from rotorsim.film.heat import energy_problem
+from rotorsim.film.inlets import layer_fluxes
 from rotorsim.film.solution import solve_film
 from rotorsim.model import (
     Bearing,
@@ -85,7 +86,7 @@ def test_neighbours_agree_on_the_flow_between_them(solved):
 def whole_film_fluxes(energy, face):
     """Flux of every layer of every cell, (n, m, k); nothing in grooves."""
     everywhere = np.ones_like(energy.fixed)
-    fluxes = _layer_fluxes(energy, face, everywhere).reshape(*everywhere.shape, -1)
+    fluxes = layer_fluxes(energy, face, everywhere).reshape(*everywhere.shape, -1)
     return np.where(energy.fixed[:, :, None], 0.0, fluxes)
 
 
