@@ -134,7 +134,8 @@ def study_machine_control(
     share = settings.reduction_error
     while True:
         reduction = reduced(system, share)
-        feedback = _designed(reduction.system, settings, speed)
+        design = _designed(reduction.system, settings, speed)
+        feedback = _sampled(design, settings)
         controlled = feedback.eigenvalues(system)
         growth = float(controlled[0].real)
         left_out = reduction.system.nstates < system.nstates
@@ -144,7 +145,7 @@ def study_machine_control(
         share /= 10.0
     passive, unsampled = _least_stable_first(np.asarray(system.A)), None
     if feedback.sample_time:
-        unsampled = _continuous(reduction.system, settings, speed).eigenvalues(system)[0].real
+        unsampled = float(design.eigenvalues(system)[0].real)
     else:
         controlled = _least_stable_first(feedback.closed_loop(system)[0])
     runs: list[LinearMotion | None] = [None, None]
@@ -159,8 +160,7 @@ def study_machine_control(
         ]
     return MachineControlStudy(
         speed, disturbance, settings.design, actuators, sensors, system, reduction, feedback,
-        passive, controlled, None if unsampled is None else float(unsampled),
-        modulus_margin(system, feedback), *runs,
+        passive, controlled, unsampled, modulus_margin(system, feedback), *runs,
     )  # fmt: skip
 
 
@@ -180,19 +180,19 @@ def designed_feedback(machine: MachineFile, speed: float) -> OutputFeedback:
 
 
 def _designed(small: Any, settings: MachineControl, speed: float) -> OutputFeedback:
-    """Return the feedback of the reduced machine, sampled where the settings say so."""
-    feedback = _continuous(small, settings, speed)
-    if settings.sample_time is None:
-        return feedback
-    return feedback.sampled(settings.sample_time, settings.delay)
-
-
-def _continuous(small: Any, settings: MachineControl, speed: float) -> OutputFeedback:
+    """Return the continuous feedback of the reduced machine."""
     limit = settings.max_force
     if settings.design is Design.PD:
         return pd_of_sensors(small, _CORNER * speed, limit)
     large = settings.large_force()
     return regulator(small, settings.displacement_scale, large, settings.noise, limit)
+
+
+def _sampled(design: OutputFeedback, settings: MachineControl) -> OutputFeedback:
+    """Return a feedback sampled where the settings say so."""
+    if settings.sample_time is None:
+        return design
+    return design.sampled(settings.sample_time, settings.delay)
 
 
 def _unknowns(machine: Machine, places: Sequence[float]) -> list[int]:
