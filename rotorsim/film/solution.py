@@ -46,7 +46,7 @@ from .thd import (
     solve_thermal_film,
 )
 from .walls import Walls, choose_walls
-from .warm_start import Position, WarmStart, turned
+from .warm_start import Position, WarmStart, pair, relative_displacement, turned
 
 WallsOf = Callable[[FilmProblem], Walls]
 """Makes the walls of a heated film's problem."""
@@ -270,19 +270,14 @@ def _solve_plain(
         film = _iterate(
             problem, displacement, search, warm, walls,
             lambda state, level=level: effort.proceed(
-                _graded_eccentricity(float(_relative(state)[0])) == level
+                _graded_eccentricity(float(relative_displacement(state)[0])) == level
             ),
             roughly,
         )  # fmt: skip
-        eps = float(_relative(film.state)[0])
+        eps = float(relative_displacement(film.state)[0])
         warm = WarmStart.of(film.state, film.heat)
         if effort.ends(film, lost=search.unreachable):
             return _conclude(film, _load_line(film.state), search, effort.iterations)
-
-
-def _relative(state: FilmState) -> Array:
-    """Return the displacements over the (hot) radial clearance, (q,)."""
-    return state.displacement / state.problem.bearing.radial_clearance
 
 
 @dataclass
@@ -318,7 +313,7 @@ def _cold_start(problem: FilmProblem, displacement: Array, search: _Search) -> W
     if cold.state.solution.converged and cold.residual < ROUGH_TOLERANCE:
         displacement = cold.state.displacement
     relative = displacement / problem.bearing.radial_clearance
-    return replace(WarmStart.of(cold.state, None), position=_pair(relative))
+    return replace(WarmStart.of(cold.state, None), position=pair(relative))
 
 
 def _graded_eccentricity(eps: float) -> float:
@@ -347,7 +342,7 @@ def _solve_general(
     warm, effort = initial, _Effort()
 
     def own_mesh(bearing: Bearing, level: Position, state: FilmState) -> bool:
-        place = _times(_pair(_relative(state)), cold)
+        place = _times(pair(relative_displacement(state)), cold)
         turn = _frame_angle(case.bearing, place)
         own = _graded_position(bearing, place) == level
         return effort.proceed(own and abs(turn) < 10.0 * _FRAME_TOLERANCE)
@@ -366,7 +361,7 @@ def _solve_general(
             continue
         proceed = partial(own_mesh, bearing, level)
         film = _iterate(problem, np.array(local), search, warm, walls, proceed, roughly)
-        local = _pair(_relative(film.state))
+        local = pair(relative_displacement(film.state))
         position = turned(local, frame)
         warm = WarmStart.of(film.state, film.heat, frame)
         turn = _frame_angle(case.bearing, local)
@@ -418,10 +413,6 @@ def _graded_position(bearing: Bearing, position: Position) -> Position:
     relative = min(max(thin / bearing.radial_clearance, 1e-3), 1.0)
     grid = 2.0 ** math.floor(math.log2(relative / 2.0)) * bearing.radial_clearance
     return round(position[0] / grid) * grid, round(position[1] / grid) * grid
-
-
-def _pair(displacement: Array) -> Position:
-    return float(displacement[0]), float(displacement[1])
 
 
 def _times(position: Position, factor: float) -> Position:

@@ -44,51 +44,50 @@ class WarmStart:
     @classmethod
     def of(cls, state: FilmState, heat: Heat | None, frame: float = 0.0) -> WarmStart:
         """Return what is known of a film whose frame stands at `frame` [rad] from the load line."""
-        problem = state.problem
-        relative = state.displacement / problem.bearing.radial_clearance
+        place, problem = relative_displacement(state), state.problem
         return cls(
-            position=turned((float(relative[0]), float(relative[1])), frame), heat=heat,
-            full=state.solution.full, mesh=problem.mesh,
-            pads=relative[2:] if problem.bearing.pads else None,
+            position=turned(pair(place), frame), heat=heat, full=state.solution.full,
+            mesh=problem.mesh, pads=place[2:] if problem.bearing.pads else None,
         )  # fmt: skip
 
     def heat_on(self, problem: FilmProblem) -> Heat | None:
         """Return the temperatures on the mesh of `problem`; None without any."""
-        if self.heat is None or self.mesh is None:
+        heat, old, mesh = self.heat, self.mesh, problem.mesh
+        if heat is None or old is None:
             return None
-        return _heat_on(problem.mesh, problem.settings.mesh.cross_film, self.heat, self.mesh)
+        if mesh is old:
+            return heat
+        layers = problem.settings.mesh.cross_film
+        around, along = _around(mesh, old), _between(mesh.y, old.y)
+        k = heat.temperature.shape[2]
+        across = _between((np.arange(layers) + 0.5) / layers, (np.arange(k) + 0.5) / k)
+        film = _taken(_taken(heat.temperature, around, 0), along, 1)
+        bush = _taken(_taken(heat.bush, around, 0), along, 1)
+        return Heat(np.ascontiguousarray(_taken(film, across, 2)), bush, heat.shaft)
 
     def full_on(self, problem: FilmProblem) -> Booleans | None:
         """Return the full cells on the mesh of `problem`; None where they are not known."""
-        if self.full is None or self.mesh is None:
+        full, old, mesh = self.full, self.mesh, problem.mesh
+        if full is None or old is None:
             return None
-        return _full_on(problem.mesh, self.full, self.mesh)
+        (lower, upper, share), (south, north, along) = _around(mesh, old), _between(mesh.y, old.y)
+        return full[np.where(share < 0.5, lower, upper)][:, np.where(along < 0.5, south, north)]
+
+
+def relative_displacement(state: FilmState) -> Array:
+    """Return the displacements over the (hot) radial clearance, (q,)."""
+    return state.displacement / state.problem.bearing.radial_clearance
+
+
+def pair(displacement: Array) -> Position:
+    """Return the journal's position, the first two of its film's displacements."""
+    return float(displacement[0]), float(displacement[1])
 
 
 def turned(position: Position, angle: float) -> Position:
     """Return a position in a frame that stands back by `angle` [rad]."""
     cos, sin = math.cos(angle), math.sin(angle)
     return position[0] * cos - position[1] * sin, position[0] * sin + position[1] * cos
-
-
-def _heat_on(mesh: FilmMesh, layers: int, heat: Heat, old: FilmMesh) -> Heat:
-    """Return the heat of a film on the mesh `old`, on `mesh` and `layers` across the film."""
-    if mesh is old and heat.temperature.shape[2] == layers:
-        return heat
-    around, along = _around(mesh, old), _between(mesh.y, old.y)
-    k = heat.temperature.shape[2]
-    across = _between((np.arange(layers) + 0.5) / layers, (np.arange(k) + 0.5) / k)
-    film = _taken(_taken(heat.temperature, around, 0), along, 1)
-    bush = _taken(_taken(heat.bush, around, 0), along, 1)
-    return Heat(np.ascontiguousarray(_taken(film, across, 2)), bush, heat.shaft)
-
-
-def _full_on(mesh: FilmMesh, full: Booleans, old: FilmMesh) -> Booleans:
-    """Return the full cells (n, m) of a film on the mesh `old`, on `mesh`."""
-    if mesh is old:
-        return full
-    (lower, upper, share), (south, north, along) = _around(mesh, old), _between(mesh.y, old.y)
-    return full[np.where(share < 0.5, lower, upper)][:, np.where(along < 0.5, south, north)]
 
 
 _Places = tuple[Indices, Indices, Array]
