@@ -101,7 +101,7 @@ def simulate_motion(
     return replace(pieces[-1], **joined)
 
 
-_Piece = TypeVar("_Piece", Orbit, "Motion")
+_Piece = TypeVar("_Piece", Orbit, Motion)
 
 
 def last_pieces(

@@ -28,8 +28,6 @@ _SHOWN = ("eccentricity_ratio", "min_film_thickness", "max_pressure", "max_tempe
           "power_loss", "side_flow", "critical_mass", "whirl_frequency_ratio")  # fmt: skip
 _SETTLED = 0.35
 """Seconds without a change after which the scenario's own mesh is taken."""
-_WARNING = "color: #c05621"
-"""Read on white and on black."""
 _STYLE = """
 .nicegui-content { padding: 12px; }
 .rotorsim table { border-collapse: collapse; width: 100%; font-size: 14px; }
@@ -40,7 +38,7 @@ _STYLE = """
 .rotorsim .bad { color: #c0392b; font-weight: 600 }
 .rotorsim, .rotorsim > div { min-width: 0; max-width: 100%; }
 .rotorsim .stale { opacity: 0.4; }
-.rotorsim .wrong { color: #c0392b; font-weight: 600 }
+.rotorsim .note { color: #c05621 } /* read on white and on black */
 /* On a phone the results stay in sight while a slider moves. */
 @media (max-width: 599px) {
   .entries { max-height: 36vh; overflow-y: auto; flex-wrap: nowrap; padding-right: 12px;
@@ -77,8 +75,7 @@ def _point_outcome(text: str, units: str, fine: bool) -> dict[str, Any]:
         verdicts.append((f"verdict, {model}", said))
     pictures = []
     if point.fields is not None and point.converged:
-        turned = scenario.bearing.turned(-scenario.load_direction)  # as the point has it
-        drawing = bearing_drawing(point, turned)
+        drawing = bearing_drawing(point, next(scenario.cases()).bearing)
         # Constrained layout draws everything twice; the drawing has nothing that needs it.
         drawing.set_layout_engine("none")
         drawing.axes[0].set_position((0.0, 0.1, 1.0, 0.9))
@@ -244,7 +241,7 @@ class _Page:
             with ui.column().classes("rotorsim").style("flex: 1 1 340px; max-width: 560px"):
                 self.state = ui.label("solving").classes("text-sm")
                 self.table = ui.html("", sanitize=False).classes("w-full")
-                self.notes = ui.html("", sanitize=False).classes("text-sm").style(_WARNING)
+                self.notes = ui.html("", sanitize=False).classes("note text-sm")
                 chart = ui.html("", sanitize=False).classes("w-full")
             with ui.column().classes("rotorsim").style("flex: 2 1 420px; max-width: 760px"):
                 first, second = (ui.html("", sanitize=False).classes("w-full") for _ in range(2))
@@ -359,7 +356,7 @@ class _Page:
         wrong = point.get("error", "")
         self.state.set_text(wrong or f"{point['status'] or 'converged'} on {mesh}")
         # What is still shown belongs to the values before.
-        for place, name in [(self.state, "wrong"), (self.table, "stale"), (self.notes, "stale")]:
+        for place, name in [(self.state, "bad"), (self.table, "stale"), (self.notes, "stale")]:
             place.classes(add=name if wrong else "", remove="" if wrong else name)
         if wrong:
             return
